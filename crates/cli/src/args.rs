@@ -19,9 +19,12 @@ use crate::values::{
     workbook,
 };
 
-/// Statistical tolerance analysis for anything you can compute.
+/// The program in one sentence, as in the README.
+const ABOUT: &str = "Statistical tolerance analysis for anything you can compute: a formula, a spreadsheet, a CAD model, your own code.";
+
+/// The command line.
 #[derive(Debug, Parser)]
-#[command(name = "sensitol", version, about, max_term_width = 100, subcommand_required = true)]
+#[command(name = "sensitol", version, about = ABOUT, max_term_width = 100, subcommand_required = true)]
 #[command(after_help = "Examples:\n  sensitol init gap && sensitol analyze gap.toml")]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -42,7 +45,7 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Moments, sensitivities and contributions of every characteristic
+    /// Yield, contributors and moments of every characteristic
     ///
     /// Several studies are read, then analysed, one after another, each with --budget and --time for itself. One that fails does
     /// not keep the others from being done. The exit code is the worst of all: 130 interrupted, 2 an error, 3 a characteristic
@@ -51,20 +54,20 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol analyze examples/engine-balance/study.toml --method full\n  sensitol analyze examples/first-study/study.toml examples/first-study/tighter.toml --check\n  sensitol analyze stack-up.xlsx --lower 0.2 --upper 0.8 --html gap.html"
     )]
     Analyze(AnalyzeArgs),
-    /// Monte Carlo: the model itself at random or quasi-random points, with standard errors
+    /// Monte Carlo: the model itself at random points, with standard errors
     #[command(
         after_help = "Examples:\n  sensitol simulate examples/engine-balance/study.toml --samples 1000000\n  sensitol simulate examples/first-study/study.toml --rare\n  sensitol simulate examples/ishigami/study.toml --sobol"
     )]
     Simulate(SimulateArgs),
-    /// The trade of speed for accuracy: every method that fits, against a reference
+    /// Every method that fits, against a reference: speed and accuracy
     #[command(after_help = "Examples:\n  sensitol compare examples/stacked-blocks/study.toml --svg trade.svg")]
     Compare(CompareArgs),
-    /// Mean and quantile band of every characteristic along a parameter
+    /// Mean and quantile band along a parameter
     #[command(
         after_help = "Examples:\n  sensitol sweep examples/connecting-rod/crank-angle.toml --over theta=-180:180:73 --svg band.svg"
     )]
     Sweep(SweepArgs),
-    /// The cheapest tolerances with which every characteristic keeps what is required
+    /// The cheapest tolerances that keep what is required
     ///
     /// Costs stand in [costs]; each characteristic says what it requires: a target_yield or a require. Method auto
     /// stands for full, and above twenty dimensions for six-n.
@@ -72,39 +75,45 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol allocate examples/shaft-and-housing/study.toml --write cheaper.toml\n  sensitol allocate examples/first-study/study.toml --confirm 100000"
     )]
     Allocate(AllocateArgs),
-    /// The evaluations that an analysis would take, and why; evaluates nothing
+    /// Lists the evaluations of an analysis, and why; evaluates nothing
     #[command(after_help = "Examples:\n  sensitol plan examples/engine-balance/study.toml --write-points points.csv")]
     Plan(PlanArgs),
-    /// Validates studies; neither evaluates nor executes anything
+    /// Validates studies; evaluates nothing
     ///
-    /// Every one is validated, whatever is wrong with another; the exit code is 2 when one is wrong.
+    /// Nothing is evaluated or executed. Every one is validated, whatever is wrong with another; the exit code is 2 when one is wrong.
     #[command(
         after_help = "Examples:\n  sensitol check examples/stacked-blocks/study.toml\n  sensitol check examples/stacked-blocks/study.toml examples/engine-balance/study.toml"
     )]
     Check(CheckArgs),
-    /// Prints a study as TOML with every short form written out; evaluates nothing
+    /// Prints a study with every short form written out
     ///
     /// A relative dimension becomes a dimension of its own and a formula. Each such entry names its origin. Analysing what is printed
     /// gives the same numbers.
     #[command(after_help = "Examples:\n  sensitol expand examples/first-study/study.toml")]
     Expand(ExpandArgs),
-    /// The built-in models, or one of them with its inputs and outputs
+    /// The built-in models, with their inputs and outputs
     #[command(after_help = "Examples:\n  sensitol models engine-balance")]
     Models(ModelsArgs),
     /// Writes a commented study that runs as it is
     #[command(
-        after_help = "Examples:\n  sensitol init gap && sensitol analyze gap.toml\n  sensitol init balance --model engine-balance"
+        after_help = "Examples:\n  sensitol init gap && sensitol analyze gap.toml\n  sensitol init pattern --position && sensitol analyze pattern.toml\n  sensitol init balance --model engine-balance"
     )]
     Init(InitArgs),
-    /// Makes a study of a stack-up table: one row a dimension, in English or German
+    /// Analyses a study again at each save
     ///
-    /// A row names the columns: name and nominal, and as far as there are direction or factor, tolerance or upper and lower deviation,
+    /// Each save gives the line of `analyze --brief` for every characteristic and the difference from the last result. Files that the study
+    /// reads are watched too. An error in the study is told, and watching goes on until Ctrl-C, which ends it with exit code 0.
+    #[command(after_help = "Examples:\n  sensitol watch examples/first-study/study.toml")]
+    Watch(WatchArgs),
+    /// Makes a study of a stack-up table, in English or German
+    ///
+    /// Each dimension has a row. The first row names the columns: name and nominal, and as far as there are direction or factor, tolerance or upper and lower deviation,
     /// unit, distribution, part, description. Numbers have decimal points or commas.
     #[command(
         after_help = "Examples:\n  sensitol import stack.csv -o stack.toml\n  sensitol import stack.csv --column nominal=Wert --name play\n  sensitol import stack-up.xlsx --sheet Stack --lower 0.2 --upper 0.8 -o stack.toml"
     )]
     Import(ImportArgs),
-    /// Writes a page that edits and analyses studies in a browser, offline
+    /// Writes a page that edits and analyses studies, offline
     ///
     /// The page holds the engine: it opens from disk and sends nothing anywhere. It is not part of every build: web/build makes it, and
     /// this command looks for it beside the program, where the variable SENSITOL_WORKBENCH says, or where --page does.
@@ -112,7 +121,7 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol workbench\n  sensitol workbench examples/first-study/study.toml -o first-study.html"
     )]
     Workbench(WorkbenchArgs),
-    /// The workbench over a folder of studies, in a browser on this machine
+    /// The workbench over a folder of studies, in a browser
     ///
     /// The page opens and saves studies of the folder, shows a file again when it changes, and runs external models. It is reached by the
     /// address that is printed, from this machine alone. It reads and writes nothing outside the folder. A program that a study names starts
@@ -124,12 +133,12 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol schema -o study.schema.json\n  sensitol schema --report -o report.schema.json"
     )]
     Schema(SchemaArgs),
-    /// The Pearson distribution of four moments: densities, probabilities, quantiles
+    /// The Pearson distribution of four moments
     #[command(
         after_help = "Examples:\n  sensitol pearson --skewness 0.5 --kurtosis 3.4 --sf 4 --upper-quantile 1e-6,1e-9"
     )]
     Pearson(PearsonArgs),
-    /// Completions for a shell, to be sourced by it
+    /// Completions for a shell
     #[command(
         after_help = "Examples:\n  sensitol completions bash > ~/.local/share/bash-completion/completions/sensitol"
     )]
@@ -137,10 +146,10 @@ pub(super) enum Command {
     /// The manual page
     #[command(after_help = "Examples:\n  sensitol man | man -l -")]
     Man,
-    /// Checks an external model: protocol, names, repeatability, noise, speed, least step
+    /// Checks an external model: protocol, noise, speed, least step
     #[command(after_help = "Examples:\n  sensitol probe examples/external-python/study.toml")]
     Probe(ProbeArgs),
-    /// Answers points of a study over the adapter protocol, as an external model does
+    /// Answers points of a study, as an external model does
     ///
     /// Reads requests from stdin and writes the values of the characteristics to stdout. The study then is the model of another
     /// study, of a UM-Bridge client or of workers on a cluster. With --at, --json or --output it reports the values at points instead, and the
@@ -167,7 +176,7 @@ pub(super) struct AnalyzeArgs {
     #[command(flatten)]
     pub(super) work: WorkArgs,
 
-    /// Take the answers of an external model from a CSV file with a column for every dimension and output
+    /// Take the answers of an external model from a CSV file: a column for every dimension and every characteristic
     #[arg(long, value_name = "FILE.csv", conflicts_with = "journal")]
     pub(super) points: Option<PathBuf>,
 
@@ -175,11 +184,11 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.csv", requires = "points", help_heading = OUTPUT, hide_short_help = true)]
     pub(super) write_missing: Option<PathBuf>,
 
-    /// Verify every figure by the model itself: a sample of a cheap model, or at most N check points of an external one; 0 for none
+    /// Check every figure at points of the model itself: a sample of a formula, or at most N points of an external model; 0 for none
     #[arg(long, value_name = "N", value_parser = count, num_args = 0..=1, default_missing_value = "64")]
     pub(super) verify: Option<usize>,
 
-    /// Search the true extremes in the box of the tolerance bands too, at some 2N evaluations or more for either side
+    /// Search the true worst case within the tolerance bands too: some 2N evaluations or more of N dimensions for each end
     #[arg(long, conflicts_with = "points")]
     pub(super) extremes: bool,
 
@@ -456,21 +465,56 @@ pub(super) struct AllocateArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("kind").args(["stack", "fit", "measured", "position", "closed_loop", "assembly", "process", "model"]))]
 pub(super) struct InitArgs {
     /// Output file; `.toml` is added if there is no extension [default: study.toml]. An existing file is never overwritten
     pub(super) name: Option<String>,
 
-    /// A study of this built-in model (see sensitol models), instead of a formula
-    #[arg(long, value_name = "MODEL", conflicts_with = "process")]
-    pub(super) model: Option<String>,
+    /// A linear stack: parts in a row, and the gap that is left
+    #[arg(long)]
+    pub(super) stack: bool,
 
-    /// A study of a program; writes the program too, a few lines of Python to put your CAD system into
+    /// A fit of ISO 286: a shaft in a bore
+    #[arg(long)]
+    pub(super) fit: bool,
+
+    /// A dimension with measured values; writes the values too, in a CSV file
+    #[arg(long)]
+    pub(super) measured: bool,
+
+    /// Positions of holes: zones with a diameter sign
+    #[arg(long)]
+    pub(super) position: bool,
+
+    /// A mechanism as a closed loop of vectors
+    #[arg(long = "loop")]
+    pub(super) closed_loop: bool,
+
+    /// Two parts in space with their joints
+    #[arg(long)]
+    pub(super) assembly: bool,
+
+    /// A program as the model; writes the program too, a few lines of Python to put your CAD system into
     #[arg(long)]
     pub(super) process: bool,
 
-    /// A study of two parts in space with their joints
-    #[arg(long, conflicts_with_all = ["model", "process"])]
-    pub(super) assembly: bool,
+    /// A built-in model (see sensitol models)
+    #[arg(long, value_name = "MODEL")]
+    pub(super) model: Option<String>,
+}
+
+/// A study that is analysed again at each save.
+#[derive(Debug, Args)]
+pub(super) struct WatchArgs {
+    #[command(flatten)]
+    pub(super) study: StudyArgs,
+
+    #[command(flatten)]
+    pub(super) work: WorkArgs,
+
+    /// Threads that evaluate formulas and built-in models [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
+    pub(super) threads: Option<u16>,
 }
 
 #[derive(Debug, Args)]

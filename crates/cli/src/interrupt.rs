@@ -34,6 +34,15 @@ pub(super) fn listen() {
     });
 }
 
+/// Installs a handler for a command that an interruption ends as planned: the first one stops it without a message.
+pub(super) fn listen_silently() {
+    let _ = ctrlc::set_handler(|| {
+        if PRESSED.fetch_add(1, Ordering::SeqCst) > 1 {
+            std::process::exit(130);
+        }
+    });
+}
+
 /// Gives up running evaluations after 10 s, and ends the process 3 s later in any case.
 fn hurry() {
     std::thread::sleep(PATIENCE);

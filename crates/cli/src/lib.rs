@@ -4,6 +4,7 @@
 
 mod advice;
 mod args;
+mod command_groups;
 mod commands;
 mod csv;
 mod failure;
@@ -42,13 +43,14 @@ use crate::commands::serve;
 use crate::commands::several;
 use crate::commands::simulate;
 use crate::commands::sweep;
+use crate::commands::watch;
 use crate::commands::workbench;
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue};
-use clap::{CommandFactory, Parser};
+use clap::{CommandFactory, FromArgMatches};
 
 use args::{Arguments, Command};
 use failure::{Exit, Failure};
@@ -131,7 +133,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 /// Runs the command as [`run`] does, and returns the exit code as a number, for callers that end the process in another way than by an
 /// [`ExitCode`].
 pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let parsed = command_groups::grouped().try_get_matches_from(arguments);
+    let arguments = match parsed.and_then(|mut matches| Arguments::from_arg_matches_mut(&mut matches)) {
         Ok(arguments) => arguments,
         Err(error) => return told(with_suggestion(error)) as u8,
     };
@@ -143,6 +146,7 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Simulate(asked) => simulate::run(asked, style),
         Command::Compare(asked) => compare::run(asked, style),
         Command::Sweep(asked) => sweep::run(asked, style),
+        Command::Watch(asked) => watch::run(asked, style),
         Command::Allocate(asked) => allocate::run(asked, style),
         Command::Plan(asked) => plan::run(asked, style),
         Command::Check(asked) => check::run(asked, style),

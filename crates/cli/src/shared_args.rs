@@ -21,7 +21,7 @@ pub(super) struct StudyArgs {
 /// How a study is to be analysed.
 #[derive(Debug, Args)]
 pub(super) struct HowArgs {
-    /// The method [default: that of the study, or auto]
+    /// The method [default: that of the study, or auto]; auto evaluates where the error of sigma falls most, until `--accuracy` is met
     #[arg(short, long, value_name = "METHOD")]
     pub(super) method: Option<MethodArg>,
 
@@ -29,12 +29,11 @@ pub(super) struct HowArgs {
     #[arg(long = "characteristic", alias = "kc", value_name = "NAME")]
     pub(super) characteristics: Vec<String>,
 
-    /// The nominal values and constants of this one of the study's [configurations]; `all` stands for every one in analyze, and for all at once in
-    /// allocate
+    /// Take the values of this one of the study's [configurations]; `all` means each in turn, and in allocate all at once
     #[arg(long, value_name = "NAME")]
     pub(super) configuration: Option<String>,
 
-    /// Wanted relative error of sigma, for auto [default: that of the study, or 0.01]
+    /// How exact auto makes sigma: its relative error [default: that of the study, or 0.01]
     #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
     pub(super) accuracy: Option<f64>,
 
@@ -50,7 +49,7 @@ pub(super) struct HowArgs {
     #[arg(long, value_name = "E", value_parser = part, allow_negative_numbers = true, hide_short_help = true)]
     pub(super) accuracy_yield: Option<f64>,
 
-    /// Most evaluations that may be spent; without it a method that needs more than 1000000 is refused
+    /// Evaluate the model at most N times; without it a method that needs more than 1000000 is refused
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     pub(super) budget: Option<usize>,
 

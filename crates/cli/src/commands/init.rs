@@ -15,64 +15,16 @@ use sensitol_study::write::{inline, pair, quoted};
 /// Tolerance of the inputs of a built-in model, relative to their nominal value.
 const TOLERANCE: &str = "1%";
 
-const FORMULA: &str = r#"# A stack of three parts in a housing. Everything after a # is a comment.
-# `sensitol analyze` evaluates the formula at a few points and tells what the tolerances do to the gap.
-
-[dimensions]
-# The nominal value and half the tolerance band; the band is 3 sigma of a normal distribution unless said otherwise.
-housing = { nominal = 50.20, tolerance = 0.10, unit = "mm" }
-spacer  = { nominal = 10.00, tolerance = [-0.05, 0.0], unit = "mm" }                       # a one-sided tolerance
-bearing = { nominal = 20.00, tolerance = 0.06, unit = "mm", distribution = "uniform" }     # or triangular, beta, lognormal ...
-tilt    = { nominal = 0.0, tolerance = 0.5, unit = "deg" }
-
-[characteristics]
-# The limits say which assemblies work, and target_yield what share of them must.
-gap = { formula = "housing*cos(tilt*deg) - spacer - 2*bearing", unit = "mm", lower = 0.05, upper = 0.45, target_yield = 0.9973 }
-
-# [analysis]
-# method = "full"        # auto unless said otherwise: as few evaluations as the wanted accuracy takes
-# accuracy = 0.001       # the relative error of sigma that auto may leave
-
-# What tolerances cost, for `sensitol allocate`: the cheapest ones that keep the target yield.
-[costs]
-housing = { model = "reciprocal", a = 1.0, b = 0.20, min = 0.02, max = 0.40 }              # a + b/T
-bearing = { model = "reciprocal", a = 2.0, b = 0.24, min = 0.01, max = 0.20 }
-"#;
-
-const ASSEMBLY: &str = r#"# A cover on a housing: two parts in space. Everything after a # is a comment.
-# `sensitol check` tells which motions the joints leave, `sensitol analyze` what the tolerances do to the gap.
-
-[dimensions]
-height = { nominal = 40.0, tolerance = 0.05, unit = "mm" }
-pitch  = { nominal = 60.0, tolerance = 0.04, unit = "mm" }
-reach  = { nominal = 90.0, tolerance = 0.10, unit = "mm" }
-lip    = { nominal = 5.0, tolerance = 0.03, unit = "mm" }
-wall   = { nominal = 89.6, tolerance = 0.08, unit = "mm" }
-square = { nominal = 0.0, tolerance = 0.1, unit = "deg" }      # the seat is not quite square to the wall
-
-# A part is a rigid body: features in its own frame. Numbers, dimensions by name, or formulas in quotes.
-[parts.housing]                                                # the first part stands still
-seat = { plane = [0, 0, "height"], normal = { turned = "square", about = "y", from = "z" } }
-hole = { axis = [15, 10, "height"], along = "z" }
-slot = { frame = ["15 + pitch", 10, "height"], z = "z", x = "x" }
-wall = { plane = ["wall", 0, 20], normal = "x" }
-
-[parts.cover]
-at    = [0, 0, 40]                                             # where the search starts
-face  = { plane = [0, 0, 0], normal = "-z" }
-pin1  = { axis = [15, 10, 0], along = "z" }
-pin2  = { axis = ["15 + pitch", 10, 0], along = "z" }
-flange = { plane = ["reach", 0, "-lip"], normal = "-x" }
-
-# Joints in the order of assembly. `takes` says how many of the six freedoms each one removes.
-[joints]
-face   = { on = "housing.seat", against = "cover.face", takes = 3 }
-first  = { hole = "housing.hole", pin = "cover.pin1", takes = 2 }
-second = { slot = "housing.slot", pin = "cover.pin2", takes = 1 }
-
-[characteristics]
-gap = { of = "cover.flange", from = "housing.wall", unit = "mm", lower = 0.15, upper = 0.65, target_yield = 0.9973 }
-"#;
+const FORMULA: &str = include_str!("../../studies/formula.toml");
+const STACK: &str = include_str!("../../studies/stack.toml");
+const FIT: &str = include_str!("../../studies/fit.toml");
+const POSITION: &str = include_str!("../../studies/position.toml");
+const LOOP: &str = include_str!("../../studies/loop.toml");
+const ASSEMBLY: &str = include_str!("../../studies/assembly.toml");
+/// Study that names its file of values as `{file}`.
+const MEASURED: &str = include_str!("../../studies/measured.toml");
+/// Example values of a measured dimension.
+const VALUES: &str = include_str!("../../studies/measured.csv");
 
 /// Returns a study whose model is a program.
 fn process(script: &str) -> String {
@@ -119,21 +71,46 @@ for line in sys.stdin:
     print(json.dumps(answer), flush=True)
 "#;
 
+/// Studies of the kinds that need no other file: a text and the commands to try next.
+fn own_study(asked: &InitArgs) -> (&'static str, &'static [&'static str]) {
+    match asked {
+        InitArgs { stack: true, .. } => (STACK, &["analyze", "allocate"]),
+        InitArgs { fit: true, .. } => (FIT, &["analyze"]),
+        InitArgs { position: true, .. } => (POSITION, &["analyze"]),
+        InitArgs { closed_loop: true, .. } => (LOOP, &["analyze"]),
+        InitArgs { assembly: true, .. } => (ASSEMBLY, &["check", "analyze"]),
+        _ => (FORMULA, &["analyze", "allocate"]),
+    }
+}
+
+/// Returns the files of a kind with their texts, and the commands to try next.
+fn written(asked: &InitArgs, path: &Path) -> Result<(Vec<(PathBuf, String)>, &'static [&'static str]), Failure> {
+    // A study that reads a file names it without its folder.
+    let beside = |extension: &str| {
+        let file = path.with_extension(extension);
+        let name = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        (file, name)
+    };
+    let study = |text: String| (path.to_owned(), text);
+    if let Some(model) = &asked.model {
+        return Ok((vec![study(of_model(known(model)?))], &["analyze"]));
+    }
+    if asked.process {
+        let (file, name) = beside("py");
+        return Ok((vec![study(process(&name)), (file, SCRIPT.to_owned())], &["probe", "analyze"]));
+    }
+    if asked.measured {
+        let (file, name) = beside("csv");
+        return Ok((vec![study(MEASURED.replace("{file}", &name)), (file, VALUES.to_owned())], &["analyze"]));
+    }
+    let (text, next) = own_study(asked);
+    Ok((vec![study(text.to_owned())], next))
+}
+
 pub(crate) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
     let path = study_path(asked.name.as_deref().unwrap_or("study"));
     let name = shell(&path);
-    let mut files: Vec<(PathBuf, String)> = Vec::new();
-    match &asked.model {
-        Some(model) => files.push((path.clone(), of_model(known(model)?))),
-        None if asked.process => {
-            let script = path.with_extension("py");
-            let beside = script.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-            files.push((path.clone(), process(&beside)));
-            files.push((script, SCRIPT.to_owned()));
-        }
-        None if asked.assembly => files.push((path.clone(), ASSEMBLY.to_owned())),
-        None => files.push((path.clone(), FORMULA.to_owned())),
-    }
+    let (files, next) = written(asked, &path)?;
     if let Some((there, _)) = files.iter().find(|(path, _)| path.exists()) {
         return Err(Failure::Exists { path: there.clone() });
     }
@@ -142,17 +119,8 @@ pub(crate) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
     for (destination, text) in opened {
         destination.write(&text)?;
     }
-    let next = match () {
-        () if asked.process => "probe",
-        () if asked.assembly => "check",
-        () => "analyze",
-    };
-    let more = if asked.process || asked.assembly || asked.model.is_some() {
-        if asked.assembly { format!("\n      sensitol analyze {name}") } else { String::new() }
-    } else {
-        format!("\n      sensitol allocate {name}")
-    };
-    let said = format!("written: {}\nnext: sensitol {next} {name}{more}\n", path.display());
+    let commands: Vec<String> = next.iter().map(|command| format!("sensitol {command} {name}")).collect();
+    let said = format!("written: {}\nnext: {}\n", path.display(), commands.join("\n      "));
     Destination::Stdout.write(&said)?;
     Ok(Exit::Done)
 }

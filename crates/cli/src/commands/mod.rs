@@ -24,4 +24,5 @@ pub(crate) mod serve;
 pub(crate) mod several;
 pub(crate) mod simulate;
 pub(crate) mod sweep;
+pub(crate) mod watch;
 pub(crate) mod workbench;

@@ -34,7 +34,8 @@ pub fn exit_codes() -> impl Iterator<Item = (u8, &'static str)> {
 }
 
 /// Environment variables that the program reads, with their meaning.
-const ENVIRONMENT: [(&str, &str); 2] = [
+const ENVIRONMENT: [(&str, &str); 3] = [
+    ("COLUMNS", "width of a report that is not written to a terminal, 80 without it"),
     ("NO_COLOR", "when set, no colours where --color does not ask for them"),
     (
         "LC_ALL, LC_CTYPE, LANG",

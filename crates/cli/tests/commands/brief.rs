@@ -101,6 +101,59 @@ fn an_allocation_begins_with_what_is_kept() {
     }
 }
 
+/// The verdict comes first, then contributors, then moments and intervals. A study without limits has no empty columns, and a
+/// characteristic without limits or without a target says so.
+#[test]
+fn a_report_answers_in_the_order_of_the_questions() {
+    let report = text(&["analyze", "examples/first-study/study.toml"]);
+    let place = |words: &str| report.find(words).unwrap_or_else(|| panic!("{words}\n{report}"));
+    let order = [
+        "MISSED\n\ngap [mm]",
+        "\n  yield 99.659 %",
+        "contrib. %",
+        "\n  nominal ",
+        "\n  ± 3 sigma",
+        "\n\ngap 99.659 % (",
+    ];
+    let places: Vec<usize> = order.iter().map(|words| place(words)).collect();
+    assert!(places.is_sorted(), "{places:?}\n{report}");
+    let folder = tempfile::tempdir().unwrap();
+    let head = |characteristics: &str| {
+        let path = folder.path().join("gap.toml");
+        let dimensions = "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\n[characteristics]\n";
+        std::fs::write(&path, format!("{dimensions}{characteristics}")).unwrap();
+        let report = text(&["analyze", path.to_str().unwrap()]);
+        report.split("\n\n").nth(1).unwrap().to_owned()
+    };
+    let free = "free = { formula = \"2*a\" }\n";
+    let limited = "limited = { formula = \"a\", lower = 9.8 }\n";
+    let wanted = "wanted = { formula = \"a\", lower = 9.8, target_yield = 0.9 }\n";
+    let none = head(free);
+    assert!(["Cpk", "yield", "verdict"].iter().all(|title| !none.contains(title)), "{none}");
+    let some = head(&format!("{free}{limited}"));
+    assert!(some.contains("yield") && some.contains("no limits") && !some.contains("verdict"), "{some}");
+    let all = head(&format!("{free}{limited}{wanted}"));
+    assert!(all.contains("no limits") && all.contains("no target") && all.contains("met"), "{all}");
+}
+
+/// COLUMNS sets the width of a pipe. No label of the program is shortened at any width.
+#[test]
+fn columns_count_in_a_pipe() {
+    let of = |width: &str| {
+        let output = sensitol(&["compare", "examples/shaft-and-bore/study.toml", "--samples", "65536"])
+            .env("COLUMNS", width)
+            .output()
+            .unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let (narrow, usual, wide) = (of("60"), of("80"), of("120"));
+    let widest = |text: &str| text.lines().map(|line| line.chars().count()).max().unwrap();
+    assert!(widest(&narrow) <= 60 && widest(&usual) <= 80 && widest(&wide) > 80, "{narrow}\n{usual}\n{wide}");
+    for text in [narrow, usual, wide] {
+        assert!(text.contains("bivariate-dimension-reduction") && !text.contains('…'), "{text}");
+    }
+}
+
 /// `--brief` prints a line for every characteristic. Its figures are those of the report, without digits that the error does not carry.
 #[test]
 fn one_line_where_one_is_asked() {
@@ -121,6 +174,9 @@ fn one_line_where_one_is_asked() {
         "gap 97.93 % (target 99.99 %) MISSED: 20675 ppm below 5.66; b 64 %, a 36 %\n\
          sum mean 14.00000, sigma 0.16667 mm, no limits; b 64 %, a 36 %\n"
     );
+    // A long report ends with the same lines, below an empty one.
+    let report = text(&["analyze", path.to_str().unwrap()]);
+    assert!(report.ends_with(&format!("\n\n{}", line(path.to_str().unwrap()))), "{report}");
     let refused = sensitol(&["analyze", path.to_str().unwrap(), "--brief", "--json"]).output().unwrap();
     assert_eq!(refused.status.code(), Some(2));
 }

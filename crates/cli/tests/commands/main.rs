@@ -32,6 +32,7 @@ mod several;
 mod sobol;
 mod sweep;
 mod verdicts;
+mod watch;
 mod workbench;
 mod workbooks;
 mod worst_cases;

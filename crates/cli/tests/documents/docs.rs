@@ -28,7 +28,7 @@ fn console_blocks_are_real() {
     for example in INSTALLED {
         cases.skip(format!("examples/{example}/README.md"));
     }
-    cases.env("LC_ALL", "C.UTF-8").run();
+    cases.env("LC_ALL", "C.UTF-8").env("COLUMNS", "80").run();
 }
 
 fn read(path: &str) -> String {

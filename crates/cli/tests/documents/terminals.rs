@@ -141,6 +141,7 @@ fn no_command_obeys_a_name() {
         &["probe", "model.toml"],
         &["workbench", "bad.toml", "--page", HOSTILE],
         &["serve", HOSTILE],
+        &["watch", HOSTILE],
         &["import", HOSTILE],
         &["evaluate", "bad.toml"],
         &["journal", "show", journal],
