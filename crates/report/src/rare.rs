@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::document::number::{UNKNOWN, known, plain, short, significant, yielded};
+use crate::document::number::{UNKNOWN, known, plain, plural, short, significant, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Line, Section, Value};
 use crate::figures::Named;
 use crate::head;
@@ -63,9 +63,9 @@ impl RareReport {
         let found = &self.found;
         let mut document = Document::titled(self.head.title.as_deref());
         document.line(format!(
-            "importance sampling: {} points, {} evaluations with the {} surrogate{}{}",
+            "importance sampling: {} points, {} with the {} surrogate{}{}",
             found.samples,
-            found.run.evaluations,
+            plural(found.run.evaluations as usize, "evaluation", "evaluations"),
             found.method.name(),
             seed(&found.run),
             head::beside(&found.run)

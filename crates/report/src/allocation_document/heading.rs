@@ -85,9 +85,9 @@ impl AllocationReport {
             .evaluator
             .map_or(String::new(), |_| format!(", sent in {}", plural(self.run.stages as usize, "batch", "batches")));
         page.line(format!(
-            "{} evaluations in {} rounds{batches}{}{}{}{}",
-            self.run.evaluations.saturating_sub(sampled),
-            self.rounds,
+            "{} in {}{batches}{}{}{}{}",
+            plural(self.run.evaluations.saturating_sub(sampled) as usize, "evaluation", "evaluations"),
+            plural(self.rounds, "round", "rounds"),
             head::beside(&self.run),
             match self.model_points {
                 0 => String::new(),

@@ -138,7 +138,11 @@ fn block(block: &Element) -> String {
         Element::Aside(aside) if aside.title.is_empty() => blocks(&aside.blocks),
         Element::Aside(aside) => format!("<h3>{}</h3>\n{}", aside.title, blocks(&aside.blocks)),
         Element::List(list) => {
-            format!("<p class=\"note\">{}: {}</p>\n", escaped(list.title.trim()), escaped(&list.words.join(" ")))
+            format!(
+                "<p class=\"note\">{}: {}</p>\n",
+                escaped(list.title.trim().trim_end_matches(':')),
+                escaped(&list.words.join(" "))
+            )
         }
         Element::Table(one) => table(one),
         Element::Chart(Chart::Plot(one)) => figure(one),

@@ -29,7 +29,9 @@ fn shown(block: &Element) -> String {
             let title = if aside.title.is_empty() { String::new() } else { format!("### {}\n\n", aside.title) };
             title + &aside.blocks.iter().map(shown).collect::<String>()
         }
-        Element::List(list) => format!("{}: {}\n\n", escaped(list.title.trim()), escaped(&list.words.join(" "))),
+        Element::List(list) => {
+            format!("{}: {}\n\n", escaped(list.title.trim().trim_end_matches(':')), escaped(&list.words.join(" ")))
+        }
         Element::Table(table) => tabled(table),
         Element::Finding(one) => {
             format!("- **{}** {} {}\n\n", one.code, escaped(&one.message), escaped(&one.actions.join(" ")))

@@ -227,7 +227,7 @@ pub(crate) fn index_with(value: f64, error: Option<f64>) -> String {
 }
 
 /// Least distinguishable reject rate: no distribution of a dimension is known so far out.
-pub(super) const FEWEST: f64 = 1e-9;
+pub(crate) const FEWEST: f64 = 1e-9;
 
 /// Formats a computed yield in percent.
 pub(crate) fn yielded(yield_: f64) -> String {

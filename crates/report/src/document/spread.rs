@@ -7,6 +7,9 @@ use crate::document::number::{beside, plain, power_of_ten, unsigned_zero};
 use crate::document::svg::escaped;
 use sensitol::simulation::Histogram;
 
+/// Rejects of a limit beyond which nothing lies.
+const NO_REJECTS: &str = "0 ppm";
+
 /// Height of the density, in px.
 const TALL: f64 = 150.0;
 /// Distance between the density and the labels above, in px.
@@ -319,7 +322,9 @@ impl<'c> DensityPlot<'c> {
                     ("upper", x) if x + wide > width => (format!("{rejected} above"), inside),
                     _ => (rejected.clone(), side),
                 };
-                labels.put("rejected", text, (x, side), width);
+                // Nothing is bad about a limit that rejects nothing.
+                let class = if rejected == NO_REJECTS { "" } else { "rejected" };
+                labels.put(class, text, (x, side), width);
             }
         }
         let mean = of.places.iter().find(|place| place.1 == "mean").filter(|place| self.marked(place.0));

@@ -18,7 +18,8 @@
   /// With so many decimals at most, and down to the second digit of the error.
   const carried = (x, most, error) => x.toFixed(within(error > 0 ? 1 - magnitude(error) : most, 0, most)).replace(/^-(0\.?0*)$/, "$1");
   const beside = (x, sigma, error) => {
-    const decimals = sigma > 0 ? 4 - magnitude(sigma) : 6;
+    // Six digits, but at least three and at most five of sigma, as in the report.
+    const decimals = sigma > 0 ? within(5 - magnitude(x), 2 - magnitude(sigma), 4 - magnitude(sigma)) : 6;
     return decimals > 9 || Math.abs(x) > 1e9 ? significant(x, 8) : carried(x, Math.max(0, decimals), error);
   };
   // The last digit of yields and rejects is the first one of the standard error, and what an interval does not tell from none is a bound. No law

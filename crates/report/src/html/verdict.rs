@@ -7,7 +7,7 @@ use crate::WarningReport;
 use crate::analysis::analysis_document::CharacteristicSections;
 use crate::analysis::statistics::part;
 use crate::analysis::worst_case::{KnownWorstCase, WorstCaseKind};
-use crate::document::number::{index, plain, plural, significant, yielded};
+use crate::document::number::{FEWEST, index, plain, plural, significant, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::svg::escaped;
 use crate::figures::{Figures, Named};
@@ -170,7 +170,10 @@ impl<'r> JudgedCharacteristic<'r> {
             yield_: one.yield_,
             interval: one.yield_interval,
             yield_text: one.yield_.map(|_| yield_text(one)),
-            all_ppm: (known && one.limited()).then(|| significant(1e6 * all, 3)),
+            all_ppm: (known && one.limited()).then(|| match all > 0.0 && all < FEWEST {
+                true => format!("< {}", significant(1e6 * FEWEST, 2)),
+                false => significant(1e6 * all, 3),
+            }),
             ppm: [&one.below, &one.above].map(|of| value(of).map(|share| 1e6 * share)),
             sides: sides.into_iter().filter_map(|(side, of)| Some(beyond(side, of.as_ref()?))).collect(),
             ..Self::of(one, place)
