@@ -25,7 +25,8 @@ use sensitol_report::document::terminal::text;
 use sensitol_report::document::{Detail, Style};
 use sensitol_report::html::{WhatIf, analyze_html};
 use sensitol_report::{
-    Report, analyze_xlsx, budget_csv_of_studies, budget_document, csv_file_names, csv_files, stack_csv, stack_document,
+    Report, WarningReport, analyze_xlsx, budget_csv_of_studies, budget_document, csv_file_names, csv_files, stack_csv,
+    stack_document,
 };
 use sensitol_study::Study;
 
@@ -135,7 +136,18 @@ pub(crate) fn analyzed(
     let clock = Clock::start(asked.work.time);
     let analysis = analyze(study, asked.threads, &clock, look)?;
     let about = clock.about(study);
-    let report = Report::keeping(&study.problem, analysis, about);
+    let mut report = Report::keeping(&study.problem, analysis, about);
+    // Every form of the report has the warning of a strict check, which therefore comes before all of them.
+    let conditional = if asked.strict && verdict(&report.analysis, asked) == Exit::Done {
+        conditional(&report.analysis)
+    } else {
+        Vec::new()
+    };
+    let is_conditional = !conditional.is_empty();
+    if is_conditional {
+        report.warnings.push(WarningReport::of(&Warning::ConditionalVerdict { characteristics: conditional }));
+    }
+    let report = report;
     let analysis = &report.analysis;
     let written = show(&report);
     let written = written.and(files.folder.map_or(Ok(()), |folder| folder.write(&csv_files(&report))));
@@ -163,18 +175,15 @@ pub(crate) fn analyzed(
     if !complete {
         return Ok(Exit::NoResult);
     }
+    Ok(if is_conditional { Exit::NoResult } else { confirmed(verdict(analysis, asked), &analysis.run) })
+}
+
+/// Exit code of the requirements, if they are checked.
+fn verdict(analysis: &Analysis, asked: &AnalyzeArgs) -> Exit {
     let unfinished = analysis.characteristics.iter().any(|one| one.unfinished);
     let judged = analysis.characteristics.iter().flat_map(CharacteristicAnalysis::requirements);
     let judged = judged.chain(analysis.joint_requirement);
-    let exit = if asked.check { checked(unfinished, judged) } else { Exit::Done };
-    if asked.strict && exit == Exit::Done {
-        let conditional = conditional(analysis);
-        if !conditional.is_empty() {
-            look.warn(&Warning::ConditionalVerdict { characteristics: conditional });
-            return Ok(Exit::NoResult);
-        }
-    }
-    Ok(confirmed(exit, &analysis.run))
+    if asked.check { checked(unfinished, judged) } else { Exit::Done }
 }
 
 /// Names of the characteristics with a requirement that rests on the surface only, those of a joint yield included.

@@ -38,6 +38,11 @@ fn a_strict_check_accepts_proof_and_points_only() {
     assert_eq!(strict.status.code(), Some(3));
     let errors = String::from_utf8_lossy(&strict.stderr).into_owned();
     assert!(errors.contains("conditional-verdict") && errors.contains("`gap`"), "{errors}");
+    // The report in JSON has the warning too.
+    let json = analyze(&study, &["--check", "--strict", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let codes: Vec<&str> = json["warnings"].as_array().unwrap().iter().filter_map(|one| one["code"].as_str()).collect();
+    assert!(codes.contains(&"conditional-verdict"), "{codes:?}");
     assert_eq!(analyze(FORMULA, &["--check", "--strict"]).status.code(), Some(0));
     // The option means nothing without a check.
     assert_eq!(analyze(&study, &["--strict"]).status.code(), Some(2));
