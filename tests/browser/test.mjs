@@ -8,6 +8,7 @@ import { dirname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
+import { pictures } from "./assembly.mjs";
 import { Browser } from "./chromium.mjs";
 import { asGrey, changes, contrast, luminances } from "./grey.mjs";
 import { FAULTS, MARGINS, SHEETS, filled } from "./paper.mjs";
@@ -35,7 +36,7 @@ const quiet = (page) => assert.deepEqual(page.complaints, []);
 // Labels of a chart that lie over one another, by as much as a pixel.
 const OVERLAPS = `(() => {
   const found = [];
-  for (const svg of document.querySelectorAll("svg.density, svg.gauge, svg.tail")) {
+  for (const svg of document.querySelectorAll("svg.density, svg.gauge, svg.tail, svg.assembly")) {
     const boxes = [...svg.querySelectorAll("text")].map((text) => [text.textContent, text.getBoundingClientRect()]).filter(([, box]) => box.width > 0);
     boxes.forEach(([a, p], i) => boxes.slice(i + 1).forEach(([b, q]) => {
       if (p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 2 && q.top < p.bottom - 2) found.push(a + " | " + b);
@@ -376,6 +377,11 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
   const below = await page.evaluate("(() => { const { top, height } = document.querySelector('svg.density.wide').getBoundingClientRect(); return top + height / 3; })()");
   assert.ok(below <= 900, `the density begins at ${below}`);
   await page.close();
+});
+
+test("a picture of an assembly turns by keys, and a slider moves its parts", async () => {
+  const file = report("analyze", "examples/shaft-two-bores/study.toml", "picture");
+  await pictures(browser, file, readFileSync(file, "utf8"));
 });
 
 test("numbers of a sweep's chart are those of its data", async () => {

@@ -58,6 +58,7 @@ impl Clock {
             sha256: study.sha256.clone(),
             warnings: study.warnings.clone(),
             block: study.about.clone(),
+            scene: study.scene(),
         }
     }
 }

@@ -5,6 +5,7 @@
 mod allocation;
 mod allocation_document;
 mod analysis;
+mod assembly;
 mod compare;
 #[cfg(test)]
 mod completeness;
@@ -54,6 +55,7 @@ pub use xlsx::{AUTHOR, analyze_xlsx};
 
 use serde::Serialize;
 
+use crate::assembly::ReportedAssembly;
 use crate::document::number::{UNKNOWN, band, significant};
 use sensitol::analysis::Analysis;
 use sensitol::problem::Problem;
@@ -61,6 +63,7 @@ use sensitol::warning::{Advice, Warning};
 use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::labels::Labels;
+use sensitol_study::AssemblyScene;
 
 /// Version of the JSON report's structure.
 pub const SCHEMA: u32 = 2;
@@ -82,6 +85,9 @@ pub struct Report {
     pub(crate) correlation: Vec<Pair>,
     /// Warnings about assumptions that fail, in the study or in the analysis.
     pub warnings: Vec<WarningReport>,
+    /// Assembly in space, for pages and tables; None if the study has none.
+    #[serde(skip)]
+    pub(crate) assembly: Option<ReportedAssembly>,
 }
 
 /// One dimension as the analysis took it.
@@ -143,6 +149,8 @@ pub struct About {
     pub warnings: Vec<Warning>,
     /// Cells of the title block of pages: name and text.
     pub block: Vec<(&'static str, String)>,
+    /// Scene of an assembly in space; None if the study has none.
+    pub scene: Option<AssemblyScene>,
 }
 
 impl Report {
@@ -159,6 +167,7 @@ impl Report {
             correlation: correlation(problem),
             warnings: about.warnings.iter().chain(&analysis.warnings).map(WarningReport::of).collect(),
             analysis,
+            assembly: about.scene.map(|scene| ReportedAssembly { scene, deviations: Vec::new() }),
         }
     }
 

@@ -243,7 +243,7 @@ impl<'a> Closure<'a> {
     }
 
     /// Newton steps of least norm, so that a motion that no joint stops stays where it is.
-    fn search(&mut self) -> bool {
+    pub(crate) fn search(&mut self) -> bool {
         for _ in 0..MOST {
             let linear = self.linear();
             let off = largest(&linear.residuals);

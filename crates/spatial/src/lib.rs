@@ -17,6 +17,8 @@ mod closure;
 mod dual;
 mod error;
 mod expression;
+mod feature_place;
+mod influence;
 mod joint;
 mod measure;
 mod mobility;
@@ -33,5 +35,6 @@ pub use assembly::{
 };
 pub use closed_assembly::{ClosedAssembly, NamedFormula, PoseUnknown};
 pub use error::{SpatialError, Subject};
+pub use feature_place::FeaturePlace;
 pub use mobility::Mobility;
 pub use part_pose::PartPose;

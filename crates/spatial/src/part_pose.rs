@@ -24,6 +24,12 @@ impl PartPose {
         Some(["rx", "ry", "rz", "x", "y", "z"].map(|letters| format!("{}.{letters}", self.part)))
     }
 
+    /// Directions x, y, z of the part in the assembly.
+    pub fn axes(&self) -> [[f64; 3]; 3] {
+        let rows = constant_rotation(self.rotation);
+        [0, 1, 2].map(|axis| rows.map(|row| row[axis]))
+    }
+
     /// Pose of the part at other values of its unknowns.
     ///
     /// ```

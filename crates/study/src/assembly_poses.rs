@@ -47,26 +47,32 @@ impl Study {
         if self.poses.is_empty() {
             return Ok(None);
         }
-        let mut text = self.expanded.clone();
-        let mut names = Vec::new();
-        for unknown in self.poses.iter().filter_map(PartPose::unknowns) {
-            for (index, unknown) in unknown.iter().enumerate() {
-                let name = format!("pose of {unknown}");
-                let unit = if index < 3 { "1" } else { self.length_unit.as_deref().unwrap_or("1") };
-                text += &format!(
-                    "\n[characteristics.{}]\nformula = {}\nunit = {}\n",
-                    write::name(&name),
-                    write::quoted(&format!("`{unknown}`")),
-                    write::quoted(unit)
-                );
-                names.push(name);
-            }
-        }
+        let (names, text) = pose_characteristics(&self.poses, self.length_unit.as_deref());
+        let text = format!("{}{text}", self.expanded);
         let externals = Externals { host: self.host.clone(), ..Externals::default() };
         let study = Self::parse(&text, Format::Toml, &self.name, self.place.clone(), externals, None)?;
         let problem = study.problem.only(&names).expect("these characteristics were added");
         Ok(Some(AssemblyPoses { problem, parts: self.poses.clone() }))
     }
+}
+
+/// Characteristics that give the unknowns of all poses: their names, and their lines.
+pub(crate) fn pose_characteristics(poses: &[PartPose], length_unit: Option<&str>) -> (Vec<String>, String) {
+    let (mut names, mut text) = (Vec::new(), String::new());
+    for unknown in poses.iter().filter_map(PartPose::unknowns) {
+        for (index, unknown) in unknown.iter().enumerate() {
+            let name = format!("pose of {unknown}");
+            let unit = if index < 3 { "1" } else { length_unit.unwrap_or("1") };
+            text += &format!(
+                "\n[characteristics.{}]\nformula = {}\nunit = {}\n",
+                write::name(&name),
+                write::quoted(&format!("`{unknown}`")),
+                write::quoted(unit)
+            );
+            names.push(name);
+        }
+    }
+    (names, text)
 }
 
 impl AssemblyPoses {
@@ -75,13 +81,14 @@ impl AssemblyPoses {
         let outputs = self.problem.outputs();
         let mut found = Responses::open(points.rows(), outputs.len());
         self.problem.function().evaluate(&Request::values(points, outputs), run, &mut found);
-        (0..points.rows()).map(|row| self.of_row(&found, row)).collect()
+        (0..points.rows()).map(|row| Self::of_row(&self.parts, &found, row)).collect()
     }
 
-    fn of_row(&self, found: &Responses, row: usize) -> Result<Vec<PartPose>, EvaluationError> {
+    /// Poses of parts by the unknowns in a row of answers.
+    pub(crate) fn of_row(parts: &[PartPose], found: &Responses, row: usize) -> Result<Vec<PartPose>, EvaluationError> {
         let mut place = 0;
-        let mut poses = Vec::with_capacity(self.parts.len());
-        for part in &self.parts {
+        let mut poses = Vec::with_capacity(parts.len());
+        for part in parts {
             if part.start.is_none() {
                 poses.push(part.clone());
                 continue;

@@ -61,6 +61,7 @@ mod folder;
 pub mod import;
 mod labels;
 mod rewrite;
+mod scene;
 #[cfg(feature = "schema")]
 pub mod schema;
 mod source;
@@ -85,6 +86,10 @@ pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use files::{FileRole, NamedFile};
 pub use rewrite::{RewriteError, Rewritten};
+pub use scene::{
+    AssemblyScene, DimensionOwner, FeatureOutline, MeasureMark, RigidDisplacement, SceneDeviation, SceneFeature,
+    SceneJoint, SceneMeasure, ScenePart,
+};
 #[cfg(feature = "schema")]
 pub use schema::schema;
 pub use zone_fault::ZoneFault;
@@ -155,6 +160,8 @@ pub struct Study {
     pub poses: Vec<PartPose>,
     /// Unit of lengths of an assembly in space: the first one that the study names. None if it names none.
     pub length_unit: Option<String>,
+    /// Facts about an assembly in space; None if the study has none.
+    spatial: Option<scene::SpatialFacts>,
     /// Text that the study was read from.
     text: Arc<str>,
     format: Format,
@@ -320,7 +327,8 @@ impl Study {
             expanded: expanded.toml(text),
             mobility: expanded.spatial.as_ref().map(|facts| facts.mobility.clone()),
             length_unit: expanded.spatial.as_ref().and_then(|facts| facts.length_unit.clone()),
-            poses: expanded.spatial.map_or_else(Vec::new, |facts| facts.poses),
+            poses: expanded.spatial.as_ref().map_or_else(Vec::new, |facts| facts.poses.clone()),
+            spatial: expanded.spatial,
             configurations: expanded.configurations,
             costs: built.costs,
             losses: built.losses,

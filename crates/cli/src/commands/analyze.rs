@@ -147,7 +147,11 @@ pub(crate) fn analyzed(
     if is_conditional {
         report.warnings.push(WarningReport::of(&Warning::ConditionalVerdict { characteristics: conditional }));
     }
-    let report = report;
+    let report = match files.page {
+        // Only a page shows them.
+        Some(_) => report.with_deviations(study, &Run::to_the_end())?,
+        None => report,
+    };
     let analysis = &report.analysis;
     let written = show(&report);
     let written = written.and(files.folder.map_or(Ok(()), |folder| folder.write(&csv_files(&report))));

@@ -138,6 +138,7 @@ impl Report {
             all.note(source);
         }
         section.detail(all);
+        self.features(one, section);
         self.correlations(one, section);
         if one.has_negative_contributions() {
             section.note("a contribution below 0 lowers the variance: it varies against the others");

@@ -3,6 +3,7 @@
 pub(crate) mod analysis_document;
 mod brief;
 pub(crate) mod budget;
+mod feature_table;
 pub(crate) mod interactions;
 pub(crate) mod range_bars;
 pub(crate) mod stack;

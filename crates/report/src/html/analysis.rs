@@ -8,7 +8,8 @@ use crate::html::terms::terms;
 use crate::html::verdict::{JudgedCharacteristic, Together, Words, verdict};
 use crate::html::what_if::WhatIf;
 use crate::html::{
-    Fact, certainty as sure, evidence, fact, inputs, json, others, provenance, render, what_if_section as tries,
+    Fact, ScriptData, certainty as sure, evidence, fact, inputs, json, others, picture, provenance, render,
+    what_if_section as tries,
 };
 use sensitol::analysis::Analysis;
 use sensitol::method::Basis;
@@ -44,8 +45,13 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
         true => [judged, head(&document) + &sure],
         false => [judged + &head(&document), sure],
     };
-    let parts = [first, sections(&document) + &inputs::section(report), tries + &rest, terms("analyze", false)];
-    render(&report.head, facts(report), parts, possible.map(json))
+    let (assembly, picture) = match picture::picture(report) {
+        Some(picture) => (picture.section, Some(picture.data)),
+        None => (String::new(), None),
+    };
+    let sections = assembly + &sections(&document) + &inputs::section(report);
+    let parts = [first, sections, tries + &rest, terms("analyze", false)];
+    render(&report.head, facts(report), parts, ScriptData { what_if: possible.map(json), picture })
 }
 
 /// Sentence with the method and the seed that reproduce the figures.

@@ -12,6 +12,7 @@ mod inputs;
 mod map;
 mod pages;
 mod pareto;
+mod picture;
 mod terms;
 mod verdict;
 mod what_if;
@@ -81,7 +82,7 @@ pub(crate) fn difference_html(report: &DifferenceReport) -> String {
         fact("sensitol", format!("{}, report schema {}", report.head.sensitol, report.head.schema)),
     ];
     let parts = [summary(&document), sections(&document), String::new(), terms::terms("analyze", false)];
-    render(&report.head, facts, parts, None)
+    render(&report.head, facts, parts, ScriptData::default())
 }
 
 /// Writes the warnings that no section shows.
@@ -116,13 +117,27 @@ fn footer(head: &Head) -> String {
     format!("@page {{ @bottom-left {{ content: \"{text}\"; }} }}\n")
 }
 
-/// Writes the page around its parts, which are markup in order. `data` is JSON for the page's script. Without it no script runs.
-fn render(head: &Head, facts: Vec<Fact>, [first, sections, rest, terms]: [String; 4], data: Option<String>) -> String {
-    let style = format!("{STYLE}{}", footer(head));
-    let allowed = match data {
-        Some(_) => format!(" script-src '{}';", hash(SCRIPT)),
-        None => String::new(),
-    };
+/// Data of the scripts of a page, as JSON. A script without data does not run.
+#[derive(Default)]
+struct ScriptData {
+    what_if: Option<String>,
+    picture: Option<String>,
+}
+
+/// Writes the page around its parts, which are markup in order.
+fn render(head: &Head, facts: Vec<Fact>, [first, sections, rest, terms]: [String; 4], data: ScriptData) -> String {
+    let of_picture = if data.picture.is_some() { picture::STYLE } else { "" };
+    let style = format!("{STYLE}{of_picture}{}", footer(head));
+    let scripts = [("data", data.what_if, SCRIPT), ("scene", data.picture, picture::SCRIPT)];
+    let scripts = scripts.into_iter().filter_map(|(id, data, script)| Some((id, data?, script)));
+    let mut allowed = String::new();
+    let mut markup = String::new();
+    for (id, data, script) in scripts {
+        allowed += &format!(" '{}'", hash(script));
+        markup +=
+            &format!("<script type=\"application/json\" id=\"{id}\">{data}</script>\n<script>{script}</script>\n");
+    }
+    let allowed = if allowed.is_empty() { allowed } else { format!(" script-src{allowed};") };
     let policy =
         format!("default-src 'none'; style-src '{}';{allowed} base-uri 'none'; form-action 'none'", hash(&style));
     let (policy, command) = (escaped(&policy), escaped(head.command));
@@ -130,10 +145,6 @@ fn render(head: &Head, facts: Vec<Fact>, [first, sections, rest, terms]: [String
     let entry = |name: &str, text: &str| format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(name), escaped(text));
     let block: String = block(head).into_iter().map(|(name, text)| entry(name, text)).collect();
     let facts: String = facts.iter().map(|one| entry(one.name, &one.text)).collect();
-    let script = data.map(|data| {
-        format!("<script type=\"application/json\" id=\"data\">{data}</script>\n<script>{SCRIPT}</script>\n")
-    });
-    let script = script.unwrap_or_default();
     format!(
         r#"<!DOCTYPE html>
 <html lang="en">
@@ -164,7 +175,7 @@ fn render(head: &Head, facts: Vec<Fact>, [first, sections, rest, terms]: [String
 </section>
 {terms}
 </main>
-{script}</body>
+{markup}</body>
 </html>"#
     )
 }

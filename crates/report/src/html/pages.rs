@@ -8,7 +8,7 @@ use crate::document::{Chart, Document, Element, Flow, Section};
 use crate::head::{findings, seed};
 use crate::html::certainty::Row;
 use crate::html::verdict::{Asked, JudgedCharacteristic, Together, Words, verdict};
-use crate::html::{certainty as sure, others, provenance, render, terms};
+use crate::html::{ScriptData, certainty as sure, others, provenance, render, terms};
 use crate::sweep::SweptReport;
 use crate::{AllocationReport, CompareReport, Head, RareReport, SimulationReport, SweepReport, WarningReport};
 use sensitol::summary::RunSummary;
@@ -29,7 +29,7 @@ struct Parts {
 
 fn page(head: &Head, run: &RunSummary, document: &Document, parts: Parts) -> String {
     let markup = [parts.verdict + &summary(document), sections(document), parts.sure, parts.terms];
-    render(head, provenance(head, run), markup, None)
+    render(head, provenance(head, run), markup, ScriptData::default())
 }
 
 /// Returns words with the warnings that belong to no section.

@@ -205,6 +205,7 @@ impl StudyTask<'_> {
             sha256: study.sha256.clone(),
             warnings: study.warnings.clone(),
             block: study.about.clone(),
+            scene: study.scene(),
         }
     }
 
@@ -220,7 +221,8 @@ impl StudyTask<'_> {
         options.densities = true;
         let found = analyze_with(problem, &options, self.run).map_err(boxed)?;
         let what_if = WhatIf::of(problem, &found, &study.lines, &study.costs);
-        Ok(TaskReport::of(Shown::Analysis(Box::new((Report::of(problem, &found, self.about()), what_if)))))
+        let report = Report::keeping(problem, found, self.about()).with_deviations(study, self.run).map_err(boxed)?;
+        Ok(TaskReport::of(Shown::Analysis(Box::new((report, what_if)))))
     }
 
     /// Simulates the model itself.

@@ -18,8 +18,10 @@ use std::ops::Range;
 
 use crate::data::Data;
 use crate::error::{Fault, Faults, StudyFault, fault};
+use crate::scene::SpatialFacts;
 use crate::tree::{Key, Tree, Value};
-pub(super) use assembly::{NominalValues, SpatialFacts};
+pub(super) use assembly::NominalValues;
+pub(crate) use assembly::{WrittenAssembly, WrittenEntry};
 use sensitol::assembly::formula::is_plain;
 use sensitol::assembly::implicit::EquationSubject;
 
@@ -83,6 +85,7 @@ pub(super) fn expand(
     sides::expand(&mut expanded)?;
     general::expand(&mut expanded)?;
     groups::expand(&mut expanded)?;
+    let written = WrittenAssembly::of(&expanded.tree);
     let owners = assembly::zones::expand(&mut expanded)?;
     geometry::fasteners(&mut expanded)?;
     crate::expand::joint_entry::expand(&mut expanded);
@@ -96,7 +99,7 @@ pub(super) fn expand(
     }
     // A second time, for the blocks that geometric elements have added.
     crate::expand::joint_entry::expand(&mut expanded);
-    assembly::expand(&mut expanded, nominal)?;
+    assembly::expand(&mut expanded, written, nominal)?;
     Ok(expanded)
 }
 

@@ -4,6 +4,7 @@ mod general;
 mod measured;
 mod nominal_kink;
 mod scaling;
+mod scene;
 mod schema;
 mod spatial;
 mod spatial_analyses;

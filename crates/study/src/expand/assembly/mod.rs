@@ -12,30 +12,27 @@ mod joints;
 mod measures;
 mod parts;
 mod values;
+mod written;
 pub(super) mod zones;
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::expand::{Expanded, Origin, Tree, Value, wrong_type};
+use crate::scene::{ExtentQuantity, SpatialFacts, in_unit};
 use crate::tree::Key;
+use sensitol::assembly::formula::Formula;
 use sensitol::assembly::implicit::EquationSubject;
 use sensitol_numeric::names::nearest;
 use sensitol_spatial::{
-    Assembly, ClosedAssembly, FeatureId, JointKind, Mobility, NamedFormula, PartJoint, PartPose, SpatialError, Subject,
+    Assembly, ClosedAssembly, FeatureId, JointKind, NamedFormula, PartJoint, PartPose, Quantity, SpatialError, Subject,
 };
-use values::{Nominal, Values};
+use values::{Measures, Nominal, Values};
 
 pub(crate) use values::NominalValues;
-
-/// Facts about an assembly in space that its plain lines do not hold.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct SpatialFacts {
-    pub(crate) mobility: Mobility,
-    pub(crate) poses: Vec<PartPose>,
-    /// Unit of the lengths of poses; None if the study names none.
-    pub(crate) length_unit: Option<String>,
-}
+use written::WrittenExtent;
+pub(crate) use written::{WrittenAssembly, WrittenEntry};
 
 /// An entry of the study: its full key and its place.
 #[derive(Debug, Clone)]
@@ -45,7 +42,11 @@ struct Entry {
 }
 
 /// Replaces the assembly by plain lines. `nominal` evaluates formulas at the nominal dimensions.
-pub(super) fn expand(expanded: &mut Expanded, nominal: NominalValues<'_>) -> Result<(), Faults> {
+pub(super) fn expand(
+    expanded: &mut Expanded,
+    written: WrittenAssembly,
+    nominal: NominalValues<'_>,
+) -> Result<(), Faults> {
     let study = expanded.tree.clone();
     let measures = measures::entries(&study);
     if study.get("parts").is_none() && study.get("joints").is_none() && measures.is_empty() {
@@ -56,18 +57,89 @@ pub(super) fn expand(expanded: &mut Expanded, nominal: NominalValues<'_>) -> Res
     // First the texts of all numbers, then their values in one evaluation, then the geometry.
     let mut values = Values::new(&study);
     let mut read = read(parts, joints, &measures, &mut values)?;
+    let mut extents = extents(&read.assembly, &written, &mut values)?;
     let found = values.evaluated(nominal)?;
     read.set(&found);
     let closed = read.assembly.close().map_err(|error| read.fault(&error))?;
     let factor = values.length_factor();
-    let in_unit = |pose: &PartPose| PartPose { translation: pose.translation.map(|at| at / factor), ..pose.clone() };
-    expanded.spatial = Some(SpatialFacts {
+    for extent in extents.iter_mut().flat_map(ExtentQuantity::all) {
+        found.set(extent);
+        extent.value /= factor;
+    }
+    let placed = |pose: &PartPose| PartPose { translation: pose.translation.map(|at| at / factor), ..pose.clone() };
+    let mut facts = SpatialFacts {
+        assembly: in_unit(read.assembly.clone(), factor),
+        extents,
+        freedoms: freedoms(&read.assembly, &closed),
         mobility: closed.mobility.clone(),
-        poses: closed.poses.iter().map(in_unit).collect(),
+        poses: closed.poses.iter().map(placed).collect(),
         length_unit: values.length_unit(),
-    });
+        converts: values.literal_unit().is_some(),
+        written,
+        makers: Vec::new(),
+        formulas: BTreeMap::new(),
+    };
+    facts.formulas = formula_names(&study);
     write(expanded, &read, closed, &values);
+    facts.makers = (expanded.origins.iter().filter(|origin| origin.section == "dimensions"))
+        .map(|origin| (origin.name.clone(), origin.key.clone()))
+        .filter(|(_, key)| key.starts_with("parts.") || key.starts_with("joints."))
+        .collect();
+    expanded.spatial = Some(facts);
     Ok(())
+}
+
+/// Extents of the features of all parts, as written.
+fn extents(
+    assembly: &Assembly,
+    written: &WrittenAssembly,
+    values: &mut Values<'_>,
+) -> Result<Vec<ExtentQuantity<Quantity>>, Fault> {
+    let mut extents = Vec::new();
+    for part in &assembly.parts {
+        for feature in &part.features {
+            let name = format!("{}.{}", part.name, feature.name);
+            let entry = written.features.iter().find(|entry| entry.name == name);
+            let mut length =
+                |tree: &Tree, key: &str| values.quantity(tree, &format!("parts.{name}.{key}"), Measures::Length);
+            extents.push(match entry.map(|entry| &entry.extent) {
+                None | Some(WrittenExtent::Unknown) => ExtentQuantity::Unknown,
+                Some(WrittenExtent::Length(tree)) => ExtentQuantity::Length(length(tree, "length")?),
+                Some(WrittenExtent::Rectangle([x, y])) => {
+                    ExtentQuantity::Rectangle([length(x, "size")?, length(y, "size")?])
+                }
+                Some(WrittenExtent::Round(tree)) => ExtentQuantity::Round(length(tree, "diameter")?),
+            });
+        }
+    }
+    Ok(extents)
+}
+
+/// Freedoms that each joint takes, in words.
+fn freedoms(assembly: &Assembly, closed: &ClosedAssembly) -> Vec<Vec<String>> {
+    let mut freedoms = vec![Vec::new(); assembly.joints.len()];
+    for (equation, joint) in &closed.equations {
+        let Some(index) = *joint else { continue };
+        let prefix = format!("{}: ", assembly.joints[index].name);
+        freedoms[index].push(equation.name.strip_prefix(&prefix).unwrap_or(&equation.name).to_owned());
+    }
+    freedoms
+}
+
+/// Formulas and characteristics by name, with the names that they use.
+fn formula_names(study: &Tree) -> BTreeMap<String, Vec<String>> {
+    let mut found = BTreeMap::new();
+    for (key, entry) in
+        ["formulas", "characteristics"].iter().flat_map(|of| study.get(of).map_or(&[][..], Tree::entries))
+    {
+        // A formula that cannot be read is reported where it is read.
+        let Value::Text(text) = &entry.get("formula").unwrap_or(entry).value else { continue };
+        found.insert(
+            key.name.clone(),
+            Formula::parse(text).map_or_else(|_| Vec::new(), |formula| written::names(&formula)),
+        );
+    }
+    found
 }
 
 /// Entries of a section that an assembly needs.

@@ -1,0 +1,62 @@
+//! Table of contributions by feature and joint, for studies of assemblies in space.
+
+use crate::Report;
+use crate::assembly::{OwnerShare, owner_shares};
+use crate::document::number::percent;
+use crate::document::{Blocks, Cell, Columns, DataTable, Element, Section};
+use sensitol::analysis::CharacteristicAnalysis;
+
+/// Rows that a terminal shows unless everything is asked for.
+const ROWS: usize = 6;
+/// Share of the variance below which a row is left out.
+const SMALL: f64 = 5e-5;
+
+/// Row of the table: a feature, a joint, or a dimension of one.
+struct FeatureRow {
+    name: String,
+    kind: String,
+    share: f64,
+}
+
+impl Report {
+    /// Adds contributions by feature to a section, with the dimensions of each if everything is asked for.
+    pub(crate) fn features(&self, one: &CharacteristicAnalysis, section: &mut Section) {
+        let Some(assembly) = &self.assembly else { return };
+        let Some(shares) = owner_shares(assembly, one) else { return };
+        let shown: Vec<&OwnerShare> = shares.iter().filter(|share| share.value.abs() >= SMALL).collect();
+        let row = |share: &OwnerShare| FeatureRow {
+            name: share.name.clone(),
+            kind: share.kind(&assembly.scene),
+            share: share.value,
+        };
+        let mut all = Vec::new();
+        for share in &shown {
+            all.push(row(share));
+            let is_itself = matches!(&share.components[..], [(only, _)] if *only == share.name);
+            let components = share.components.iter().filter(|(_, value)| !is_itself && value.abs() >= SMALL);
+            all.extend(components.map(|(name, share)| FeatureRow {
+                name: format!("  {name}"),
+                kind: String::new(),
+                share: *share,
+            }));
+        }
+        let together: f64 = shown.iter().skip(ROWS).map(|share| share.value).sum();
+        let rest = format!(
+            "and {} more with {} % together; -v shows all",
+            shown.len().saturating_sub(ROWS),
+            percent(together)
+        );
+        let few = table(shown.iter().map(|share| row(share)).collect()).at_most([ROWS, 0], rest);
+        section.gap();
+        section.brief(vec![Element::Table(few)]);
+        section.detail(vec![Element::Table(table(all))]);
+    }
+}
+
+fn table(rows: Vec<FeatureRow>) -> DataTable {
+    Columns::default()
+        .named("", "feature or joint", |row: &FeatureRow| Cell::text(&row.name))
+        .shown("by feature", |row| Cell::text(&row.kind))
+        .shown("contrib. %", |row| Cell::number(row.share, percent))
+        .table("", rows)
+}
