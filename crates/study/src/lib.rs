@@ -87,8 +87,8 @@ pub use error::{StudyError, StudyFault};
 pub use files::{FileRole, NamedFile};
 pub use rewrite::{RewriteError, Rewritten};
 pub use scene::{
-    AssemblyScene, DimensionOwner, FeatureOutline, MeasureMark, RigidDisplacement, SceneDeviation, SceneFeature,
-    SceneJoint, SceneMeasure, ScenePart,
+    AssemblyScene, CompletenessGap, DimensionOwner, FeatureOutline, MeasureMark, RigidDisplacement, SceneDeviation,
+    SceneFeature, SceneJoint, SceneMeasure, ScenePart,
 };
 #[cfg(feature = "schema")]
 pub use schema::schema;

@@ -9,6 +9,7 @@ mod geometry;
 mod html;
 mod inspection;
 mod joint;
+mod picture;
 mod reports;
 mod stack;
 mod units;

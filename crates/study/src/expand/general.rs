@@ -80,6 +80,20 @@ pub(super) fn expand(expanded: &mut Expanded) -> Result<(), Faults> {
     faults.none()
 }
 
+/// Dimensions without a tolerance to which ISO 2768-m would apply, with half the tolerance in their own unit. Returns an empty list if the
+/// study has general tolerances.
+pub(super) fn applicable(study: &Tree) -> Vec<(String, f64)> {
+    if study.get("general").is_some() {
+        return Vec::new();
+    }
+    let [_, (name, values), ..] = CLASSES;
+    let general = General { length: LengthTolerance::Class(name, values), angle: None };
+    let lines = study.get("dimensions").map_or(&[][..], Tree::entries);
+    // A size outside of the table has no general tolerance.
+    let half = |line: &Tree| tolerance(line, &general, "").ok().flatten();
+    lines.iter().filter_map(|(key, line)| Some((key.name.clone(), half(line)?))).collect()
+}
+
 /// Reads the section.
 fn read(section: &Tree) -> Result<General, Fault> {
     if !matches!(section.value, Value::Table(_)) {

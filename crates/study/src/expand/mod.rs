@@ -18,10 +18,10 @@ use std::ops::Range;
 
 use crate::data::Data;
 use crate::error::{Fault, Faults, StudyFault, fault};
-use crate::scene::SpatialFacts;
+use crate::scene::{OpenZone, SpatialFacts};
 use crate::tree::{Key, Tree, Value};
 pub(super) use assembly::NominalValues;
-pub(crate) use assembly::{WrittenAssembly, WrittenEntry};
+use assembly::WrittenAssembly;
 use sensitol::assembly::formula::is_plain;
 use sensitol::assembly::implicit::EquationSubject;
 
@@ -36,6 +36,10 @@ pub(super) struct Expanded {
     pub(super) elements: Elements,
     /// Mobility and poses of an assembly in space; None if the study has none.
     pub(super) spatial: Option<SpatialFacts>,
+    /// Zones of features in space whose datums leave something free that they bound.
+    open_zones: Vec<OpenZone>,
+    /// Dimensions without a tolerance to which a general one would apply, with half of it. Empty if the study has general tolerances.
+    general: Vec<(String, f64)>,
 }
 
 /// Facts about geometric elements and joints that their plain lines do not hold.
@@ -79,10 +83,13 @@ pub(super) fn expand(
         origins: Vec::new(),
         elements: Elements::default(),
         spatial: None,
+        open_zones: Vec::new(),
+        general: Vec::new(),
     };
     configurations::expand(&mut expanded, configuration, data)?;
     processes::expand(&mut expanded, data)?;
     sides::expand(&mut expanded)?;
+    expanded.general = general::applicable(&expanded.tree);
     general::expand(&mut expanded)?;
     groups::expand(&mut expanded)?;
     let written = WrittenAssembly::of(&expanded.tree);

@@ -1,6 +1,7 @@
 //! Features and joints to which the dimensions of an assembly in space belong.
 
 use super::SpatialFacts;
+use super::entry_uses::EntryUses;
 
 /// Owner of a dimension in an assembly in space.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,10 +28,9 @@ impl SpatialFacts {
         if let Some(found) = self.maker(dimension) {
             return found;
         }
-        let users = |entries: &[crate::expand::WrittenEntry]| -> Vec<usize> {
-            let uses = |entry: &crate::expand::WrittenEntry| {
-                entry.uses.iter().any(|name| self.leads_to(name, dimension, &mut Vec::new()))
-            };
+        let users = |entries: &[EntryUses]| -> Vec<usize> {
+            let uses =
+                |entry: &EntryUses| entry.uses.iter().any(|name| self.leads_to(name, dimension, &mut Vec::new()));
             entries.iter().enumerate().filter(|(_, entry)| uses(entry)).map(|(index, _)| index).collect()
         };
         let features: Vec<usize> = (users(&self.written.features).into_iter())

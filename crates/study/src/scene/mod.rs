@@ -6,17 +6,22 @@
 //! | lines of measures | `measure_mark.rs` |
 //! | features and joints to which dimensions belong | `dimension_owner.rs` |
 //! | displacements at other dimensions | `deviation.rs` |
+//! | tolerances and datums that are left out | `completeness.rs` |
 
+mod completeness;
 mod deviation;
 mod dimension_owner;
+mod entry_uses;
 mod measure_mark;
 mod spatial_facts;
 
 use sensitol_spatial::{FeatureKind, FeaturePlace, JointKind};
 
 use crate::Study;
+pub use completeness::CompletenessGap;
 pub use deviation::{RigidDisplacement, SceneDeviation};
 pub use dimension_owner::DimensionOwner;
+pub(crate) use entry_uses::{AssemblyUses, EntryUses, OpenZone};
 pub use measure_mark::MeasureMark;
 pub(crate) use spatial_facts::{ExtentQuantity, SpatialFacts, in_unit};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::expand::WrittenAssembly;
+use super::entry_uses::{AssemblyUses, OpenZone};
 use sensitol_spatial::{Assembly, Direction, Feature, FeatureId, Mobility, PartPose, Quantity};
 
 /// Extent of a feature over which its zones hold.
@@ -43,7 +43,11 @@ pub(crate) struct SpatialFacts {
     /// True if formulas convert units.
     pub(crate) converts: bool,
     /// Features and joints as written.
-    pub(crate) written: WrittenAssembly,
+    pub(crate) written: AssemblyUses,
+    /// Zones whose datums leave something free that they bound.
+    pub(crate) open_zones: Vec<OpenZone>,
+    /// Dimensions without a tolerance to which a general one would apply, with half of it.
+    pub(crate) general: Vec<(String, f64)>,
     /// Names of dimensions that entries of the assembly have made, each with the key of its entry.
     pub(crate) makers: Vec<(String, String)>,
     /// Formulas and characteristics by name, with the names that they use.

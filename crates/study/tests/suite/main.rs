@@ -1,5 +1,6 @@
 //! Tests of the format of studies.
 
+mod completeness;
 mod general;
 mod measured;
 mod nominal_kink;

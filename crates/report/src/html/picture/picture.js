@@ -57,9 +57,8 @@
     return [...form].map((letter) => letter + points.slice(next, next += { C: 3, Z: 0 }[letter] ?? 1).map(pair).join(" ")).join("");
   };
 
-  const SVG = "http://www.w3.org/2000/svg";
   const element = (name, attributes, text) => {
-    const made = document.createElementNS(SVG, name);
+    const made = document.createElementNS(sheets[0].svg.namespaceURI, name);
     for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
     if (text !== undefined) made.textContent = text;
     return made;

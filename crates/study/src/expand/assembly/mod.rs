@@ -31,8 +31,8 @@ use sensitol_spatial::{
 use values::{Measures, Nominal, Values};
 
 pub(crate) use values::NominalValues;
+pub(crate) use written::WrittenAssembly;
 use written::WrittenExtent;
-pub(crate) use written::{WrittenAssembly, WrittenEntry};
 
 /// An entry of the study: its full key and its place.
 #[derive(Debug, Clone)]
@@ -75,7 +75,9 @@ pub(super) fn expand(
         poses: closed.poses.iter().map(placed).collect(),
         length_unit: values.length_unit(),
         converts: values.literal_unit().is_some(),
-        written,
+        written: written.uses,
+        open_zones: std::mem::take(&mut expanded.open_zones),
+        general: std::mem::take(&mut expanded.general),
         makers: Vec::new(),
         formulas: BTreeMap::new(),
     };
@@ -99,10 +101,10 @@ fn extents(
     for part in &assembly.parts {
         for feature in &part.features {
             let name = format!("{}.{}", part.name, feature.name);
-            let entry = written.features.iter().find(|entry| entry.name == name);
+            let place = written.uses.features.iter().position(|entry| entry.name == name);
             let mut length =
                 |tree: &Tree, key: &str| values.quantity(tree, &format!("parts.{name}.{key}"), Measures::Length);
-            extents.push(match entry.map(|entry| &entry.extent) {
+            extents.push(match place.and_then(|place| written.extents.get(place)) {
                 None | Some(WrittenExtent::Unknown) => ExtentQuantity::Unknown,
                 Some(WrittenExtent::Length(tree)) => ExtentQuantity::Length(length(tree, "length")?),
                 Some(WrittenExtent::Rectangle([x, y])) => {

@@ -2,6 +2,7 @@
 
 use super::zones::frame::word;
 use crate::expand::{Tree, Value};
+use crate::scene::{AssemblyUses, EntryUses};
 use crate::tree::Key;
 use sensitol::assembly::formula::Formula;
 
@@ -27,23 +28,12 @@ pub(super) enum WrittenExtent {
     Round(Tree),
 }
 
-/// An entry of the assembly as written, with the names that its numbers use.
-#[derive(Debug, Clone)]
-pub(crate) struct WrittenEntry {
-    /// Full name, such as `housing.bore`, or that of a joint.
-    pub(crate) name: String,
-    /// Names of dimensions, constants and formulas.
-    pub(crate) uses: Vec<String>,
-    pub(super) extent: WrittenExtent,
-}
-
 /// Features and joints as written, before zones and floats are replaced.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct WrittenAssembly {
-    pub(crate) features: Vec<WrittenEntry>,
-    pub(crate) joints: Vec<WrittenEntry>,
-    /// Patterns by their full names, such as `flange.patterns.bolts`, with the full names of their features.
-    pub(crate) patterns: Vec<(String, Vec<String>)>,
+    pub(super) uses: AssemblyUses,
+    /// Extents of the features, in the order of their uses.
+    pub(super) extents: Vec<WrittenExtent>,
 }
 
 impl WrittenAssembly {
@@ -54,13 +44,13 @@ impl WrittenAssembly {
             let full = |name: &str| format!("{}.{name}", part.name);
             for (key, tree) in tree.entries() {
                 if PLACES.iter().any(|place| tree.get(place).is_some()) {
-                    let (uses, extent) = (of_feature(study, tree), extent(tree));
-                    written.features.push(WrittenEntry { name: full(&key.name), uses, extent });
+                    written.uses.features.push(EntryUses { name: full(&key.name), uses: of_feature(study, tree) });
+                    written.extents.push(extent(tree));
                 }
             }
             for (key, pattern) in entries(tree.get("patterns")) {
                 let of = texts(pattern.get("of")).into_iter().map(full).collect();
-                written.patterns.push((full(&format!("patterns.{}", key.name)), of));
+                written.uses.patterns.push((full(&format!("patterns.{}", key.name)), of));
             }
         }
         for (key, tree) in entries(study.get("joints")) {
@@ -68,7 +58,7 @@ impl WrittenAssembly {
             tree.entries().iter().filter(|(key, _)| OF_JOINT.contains(&key.name.as_str())).for_each(|(_, value)| {
                 add_names(study, value, &mut uses);
             });
-            written.joints.push(WrittenEntry { name: key.name, uses, extent: WrittenExtent::Unknown });
+            written.uses.joints.push(EntryUses { name: key.name, uses });
         }
         written
     }

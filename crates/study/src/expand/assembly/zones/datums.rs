@@ -4,17 +4,21 @@
 //! left free. A feature that is measured from a datum with a zone of its own moves with that datum, by the freedoms that the datum fixes.
 
 use super::deviation::Torsor;
-use super::entry::ZonedFeature;
+use super::entry::{ZoneKind, ZonedFeature};
 use super::frame::{ConstantFrame, cross, dot, number, unit};
 use super::lines::{Extent, Lines, at};
 use crate::error::{Fault, StudyFault};
 use crate::expand::{Tree, Value, quoted};
+use crate::scene::OpenZone;
 use crate::zone_fault::ZoneFault;
 use sensitol_numeric::names::nearest;
 use sensitol_spatial::FeatureKind;
 
 /// Part of a projection below which it counts as 0: roundings of directions.
 const NOTHING: f64 = 1e-9;
+
+/// Part of a direction that datums leave free above which it is open: a thousandth of a radian.
+const LEFT: f64 = 1e-3;
 
 /// Tilts of a feature that its datums bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,6 +128,50 @@ pub(super) fn check(feature: &ZonedFeature<'_>, datums: &[&ZonedFeature<'_>]) ->
         }
     }
     Ok(())
+}
+
+/// Zones of a feature whose datums leave a displacement or a tilt free that the zone bounds. Zones of form need no datums.
+pub(super) fn open_zones(feature: &ZonedFeature<'_>, of_part: &[&ZonedFeature<'_>]) -> Vec<OpenZone> {
+    let (Ok(datums), Some(own)) = (named(feature, of_part), &feature.frame) else { return Vec::new() };
+    let mut fixed = Fixed::default();
+    for datum in &datums {
+        // A direction that varies is not examined.
+        let Some(frame) = &datum.frame else { return Vec::new() };
+        fixed.add(datum.kind, frame);
+    }
+    let [x, y, z] = own.axes;
+    let bounded: &[[f64; 3]] = match feature.kind {
+        FeatureKind::Axis => &[x, y],
+        FeatureKind::Plane => &[z],
+        FeatureKind::Point => &[x, y, z],
+        FeatureKind::Frame => &[y],
+    };
+    let mut found = Vec::new();
+    for zone in &feature.zones {
+        let open: Vec<String> = match zone.kind {
+            ZoneKind::Form => continue,
+            _ if datums.is_empty() => vec!["all of it".to_owned()],
+            ZoneKind::Location => (bounded.iter())
+                .filter(|&&along| fixed.displacements.outside(along).iter().any(|part| part.abs() > LEFT))
+                .map(|along| format!("its place along {}", direction_words(*along)))
+                .collect(),
+            ZoneKind::Orientation if fixed.rotations.0.is_empty() => vec!["its tilt".to_owned()],
+            ZoneKind::Orientation | ZoneKind::Eccentricity => Vec::new(),
+        };
+        if !open.is_empty() {
+            let datums = datums.iter().map(|datum| datum.name.to_owned()).collect();
+            found.push(OpenZone { feature: feature.full(), zone: zone.key, datums, open });
+        }
+    }
+    found
+}
+
+/// Direction in words: a letter, or its three parts.
+fn direction_words(along: [f64; 3]) -> String {
+    let letters = ["x", "y", "z"].into_iter().zip(along);
+    let word =
+        letters.clone().find(|(_, part)| (part.abs() - 1.0).abs() < NOTHING).map(|(letter, _)| letter.to_owned());
+    word.unwrap_or_else(|| format!("[{:.3}, {:.3}, {:.3}]", along[0], along[1], along[2]))
 }
 
 /// Tilts that the datums bound. A rotation about the direction of a single datum changes nothing.

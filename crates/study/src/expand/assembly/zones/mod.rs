@@ -51,6 +51,7 @@ pub(in crate::expand) fn expand(expanded: &mut Expanded) -> Result<Option<LineOw
         if let Some(entries) = entry.and_then(Tree::entries_mut) {
             entries.retain(|(key, _)| key.name != "patterns");
         }
+        expanded.open_zones.extend(of_part.iter().flat_map(|feature| datums::open_zones(feature, &of_part)));
         for (feature, torsor) in of_part.iter().zip(found) {
             write(expanded, feature, &torsor, &lines);
         }
