@@ -36,7 +36,7 @@ pub(super) fn nominal_outside_limits(dimensions: &[String]) -> Text {
 
 pub(super) fn mean_outside_limits(characteristics: &[String]) -> Text {
     say(format!(
-        "The nominal value and the mean of {} lie outside the limits, so that more than half of the assemblies are likely to be rejected. A \
+        "The nominal value and the mean of {} lie outside the limits. More than half of the assemblies are likely to be rejected. A \
          sign in the formula or the limits may be reversed.",
         names(characteristics)
     ))
