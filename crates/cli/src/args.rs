@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
-use crate::commands::import_args::ImportArgs;
 use crate::commands::journal::JournalArgs;
+use crate::import_args::ImportArgs;
+pub(super) use crate::init_args::InitArgs;
 pub(super) use crate::page_args::{ServeArgs, WorkbenchArgs};
 use crate::shared_args::OUTPUT;
 pub(super) use crate::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
@@ -462,45 +463,6 @@ pub(super) struct AllocateArgs {
 
     #[command(flatten)]
     pub(super) output: OutputArgs,
-}
-
-#[derive(Debug, Args)]
-#[command(group = ArgGroup::new("kind").args(["stack", "fit", "measured", "position", "closed_loop", "assembly", "process", "model"]))]
-pub(super) struct InitArgs {
-    /// Output file; `.toml` is added if there is no extension [default: study.toml]. An existing file is never overwritten
-    pub(super) name: Option<String>,
-
-    /// A linear stack: parts in a row, and the gap that is left
-    #[arg(long)]
-    pub(super) stack: bool,
-
-    /// A fit of ISO 286: a shaft in a bore
-    #[arg(long)]
-    pub(super) fit: bool,
-
-    /// A dimension with measured values; writes the values too, in a CSV file
-    #[arg(long)]
-    pub(super) measured: bool,
-
-    /// Positions of holes: zones with a diameter sign
-    #[arg(long)]
-    pub(super) position: bool,
-
-    /// A mechanism as a closed loop of vectors
-    #[arg(long = "loop")]
-    pub(super) closed_loop: bool,
-
-    /// Two parts in space with their joints
-    #[arg(long)]
-    pub(super) assembly: bool,
-
-    /// A program as the model; writes the program too, a few lines of Python to put your CAD system into
-    #[arg(long)]
-    pub(super) process: bool,
-
-    /// A built-in model (see sensitol models)
-    #[arg(long, value_name = "MODEL")]
-    pub(super) model: Option<String>,
 }
 
 /// A study that is analysed again at each save.

@@ -9,6 +9,8 @@ mod commands;
 mod csv;
 mod failure;
 mod files;
+mod import_args;
+mod init_args;
 mod interrupt;
 mod output;
 mod own_file;

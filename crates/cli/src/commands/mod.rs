@@ -8,7 +8,6 @@ pub(crate) mod difference;
 pub(crate) mod evaluate;
 pub(crate) mod expand;
 pub(crate) mod import;
-pub(crate) mod import_args;
 pub(crate) mod import_step;
 pub(crate) mod init;
 pub(crate) mod journal;

@@ -1,9 +1,9 @@
-//! Short text reports: first a line for every characteristic, then at most 25 lines for each, within 80 columns.
+//! Short text reports: first a line for every characteristic, then at most 30 lines for each, within 80 columns.
 
 use super::command::sensitol;
 
-/// Most lines of a characteristic unless everything is asked for.
-const MOST: usize = 25;
+/// Most lines of a characteristic unless everything is asked for: a row for each of its figures, and a picture of ten rows.
+const MOST: usize = 30;
 
 fn text(arguments: &[&str]) -> String {
     let output = sensitol(arguments).arg("-q").output().unwrap();
@@ -172,7 +172,7 @@ fn one_line_where_one_is_asked() {
     assert_eq!(
         line(path.to_str().unwrap()),
         "gap 97.93 % (target 99.99 %) MISSED: 20675 ppm below 5.66; b 64 %, a 36 %\n\
-         sum mean 14.00000, sigma 0.16667 mm, no limits; b 64 %, a 36 %\n"
+         sum mean 14.0000, sigma 0.16667 mm, no limits; b 64 %, a 36 %\n"
     );
     // A long report ends with the same lines, below an empty one.
     let report = text(&["analyze", path.to_str().unwrap()]);

@@ -84,7 +84,7 @@ fn each_save_gives_a_line_and_the_difference() {
     save(folder.path(), &study(0.03, 0.04));
     let watching = Watching::start(folder.path(), &[]);
     assert_eq!(watching.err.recv_timeout(PATIENCE).unwrap(), "watching gap.toml: Ctrl-C ends it");
-    watching.says("gap mean 6.000000, sigma 0.050000 mm, no limits; b 64 %, a 36 %");
+    watching.says("gap mean 6.00000, sigma 0.050000 mm, no limits; b 64 %, a 36 %");
     // sigma = hypot(0.12, 0.05) = 0.13.
     save(folder.path(), &study(0.12, 0.05));
     watching.says("gap mean 6.00000, sigma 0.13000 mm, no limits; a 85 %, b 15 %");
