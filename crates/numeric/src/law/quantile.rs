@@ -76,7 +76,26 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
     let y = mean + sign * best;
     let (off, density) = (law.tail(y, tail).error, law.density(y).value);
     let error = if density > 0.0 { off / density } else { f64::INFINITY };
+    let error = if error <= COARSE * sigma { error } else { error.min(extent(law, y, tail, p)) };
     LawFigure::new(y, error.max(scale))
+}
+
+/// Distance from `y` within which the tail may have the probability `p`, up to [`FACTOR`]. It replaces the error over the density where the
+/// density is no scale of the distance, as in a gap between two clusters of values.
+fn extent(law: &SurfaceLaw, y: f64, tail: LawTail, p: f64) -> f64 {
+    let [least, most] = law.range();
+    let side = |sign: f64, end: f64| {
+        let (mut distance, end) = (NEAR * law.sigma(), end.min(FARTHEST * law.sigma()));
+        while distance < end {
+            let figure = law.tail(y + sign * distance, tail);
+            if (figure.value - p).abs() > figure.error {
+                break;
+            }
+            distance *= FACTOR;
+        }
+        distance.min(end)
+    };
+    side(-1.0, y - least).max(side(1.0, most - y))
 }
 
 fn weight(now: f64, before: f64) -> f64 {
@@ -101,6 +120,14 @@ pub struct Sought {
 const NEAR: f64 = 1e-7;
 /// Error, in parts of the sampling error, within which a quantile is found.
 const OPEN: f64 = 0.02;
+/// Logarithm of a tail over `p` up to which a small step ends a search.
+const APART: f64 = 0.05;
+/// Error, in sigmas, above which the error of a probability over the density is no error of a quantile.
+const COARSE: f64 = 0.1;
+/// Greatest distance of [`extent`], in sigmas: farther out no quantile of interest lies.
+const FARTHEST: f64 = 1e3;
+/// Factor between two distances at which [`extent`] computes the tail.
+const FACTOR: f64 = 4.0;
 /// Greatest number of steps before the search of [`quantile`] takes over. A jump takes 30 halvings.
 const MANY: usize = 80;
 /// Fraction of the way from the mean to the farthest quantile at which the shared tilt is chosen. It serves all quantiles and costs a digit
@@ -153,11 +180,15 @@ fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
         let step = -here / slope;
         let known = (value.error / value.value.max(p) / slope).abs();
         open = if known.is_finite() { known } else { open };
-        let close = (NEAR * sigma).max(if open.is_finite() { OPEN * open } else { 0.0 });
+        // In a gap the density is 0, and the error over it exceeds every bracket.
+        let close = (NEAR * sigma).max(if open <= COARSE * sigma { OPEN * open } else { 0.0 });
         // The density of another distribution is no evidence of convergence: next to a corner it may be infinite.
-        let close_enough = step.abs() <= close && (measured.is_some() || here.abs() <= NEAR);
+        // Beside a cluster of values a contour may have a density where there is none, and a step that ends there.
+        let close_enough = step.abs() <= close && here.abs() <= if measured.is_some() { APART } else { NEAR };
         if here == 0.0 || close_enough {
-            return LawFigure::new((at + step).clamp(low, high), open + close);
+            let y = (at + step).clamp(low, high);
+            let known = if open <= COARSE * sigma { open } else { open.min(extent(law, y, tail, p)) };
+            return LawFigure::new(y, known + close);
         }
         if high - low <= close {
             return LawFigure::new(0.5 * (low + high), open.min(high - low) + close);
