@@ -49,7 +49,8 @@ impl Report {
         let few = table(shown.iter().map(|share| row(share)).collect()).at_most([ROWS, 0], rest);
         section.gap();
         section.brief(vec![Element::Table(few)]);
-        section.detail(vec![Element::Table(table(all))]);
+        // Pages have the picture with its tables.
+        section.detail(vec![Element::Table(table(all).at_most([usize::MAX, 0], String::new()))]);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::ReportedAssembly;
 use crate::analysis::statistics::CharacteristicStatistics;
 use sensitol::analysis::CharacteristicAnalysis;
-use sensitol_study::{AssemblyScene, DimensionOwner};
+use sensitol_study::{AssemblyScene, DimensionOwner, FeatureOutline};
 
 /// Bearer of a contribution in an assembly in space.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -33,7 +33,12 @@ impl OwnerShare {
     /// Kind of the bearer, in words.
     pub(crate) fn kind(&self, scene: &AssemblyScene) -> String {
         match &self.owner {
-            ShareOwner::Feature(_) => "feature".to_owned(),
+            ShareOwner::Feature(index) => match scene.features[*index].outline {
+                FeatureOutline::Rectangle(_) | FeatureOutline::Disc(_) => "plane".to_owned(),
+                FeatureOutline::Cylinder { .. } => "axis".to_owned(),
+                FeatureOutline::Ball(_) => "point".to_owned(),
+                FeatureOutline::Triad => "frame".to_owned(),
+            },
             ShareOwner::Joint(index) => format!("joint, {}", scene.joints[*index].kind),
             ShareOwner::Shared(features) => {
                 let names: Vec<&str> = features.iter().map(|&feature| scene.features[feature].name.as_str()).collect();

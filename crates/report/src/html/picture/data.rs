@@ -46,8 +46,10 @@ pub(super) fn json(
         }));
     }
     let labels = |of: &PicturedCharacteristic| -> Value {
-        let label =
-            |label: &super::SheetLabel| json!([class(label.kind), label.text, label.at.at.map(whole), label.at.body]);
+        let label = |label: &super::SheetLabel| {
+            let points: Vec<Value> = label.at.iter().map(|point| json!([point.at.map(whole), point.body])).collect();
+            json!([class(label.kind), label.text, points])
+        };
         of.labels.iter().map(label).collect()
     };
     let sheet = |sheet: &AssemblySheet| {

@@ -79,24 +79,30 @@ fn dot(a: Point, b: Point) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
 }
 
-/// Points of a feature that its extent gives, its origin without one.
+/// Points of a feature for the envelope of its part: the corners of a face, the ends of an axis, or its origin.
 fn corners(feature: &SceneFeature) -> Vec<Point> {
     let [x, y, z] = feature.axes;
-    let about = |origin: Point, a: f64, b: f64| {
-        vec![plus(origin, x, a), plus(origin, x, -a), plus(origin, y, b), plus(origin, y, -b)]
-    };
     match feature.outline {
         FeatureOutline::Rectangle(Some([a, b])) => {
             let ends = [plus(feature.origin, x, 0.5 * a), plus(feature.origin, x, -0.5 * a)];
             ends.into_iter().flat_map(|end| [plus(end, y, 0.5 * b), plus(end, y, -0.5 * b)]).collect()
         }
-        FeatureOutline::Disc(diameter) => about(feature.origin, 0.5 * diameter, 0.5 * diameter),
-        FeatureOutline::Cylinder { diameter, length } => {
-            let (radius, half) = (0.5 * diameter.unwrap_or(0.0), 0.5 * length.unwrap_or(0.0));
-            [half, -half].into_iter().flat_map(|by| about(plus(feature.origin, z, by), radius, radius)).collect()
+        FeatureOutline::Cylinder { length: Some(length), .. } => {
+            vec![plus(feature.origin, z, 0.5 * length), plus(feature.origin, z, -0.5 * length)]
         }
         _ => vec![feature.origin],
     }
+}
+
+/// Points on the rim of a disc or a cylinder, along x and y of the feature.
+fn rims(feature: &SceneFeature) -> Vec<Point> {
+    let radius = match feature.outline {
+        FeatureOutline::Disc(diameter) | FeatureOutline::Cylinder { diameter: Some(diameter), .. } => 0.5 * diameter,
+        _ => return Vec::new(),
+    };
+    let [x, y, _] = feature.axes;
+    let about = |end: Point| [plus(end, x, radius), plus(end, x, -radius), plus(end, y, radius), plus(end, y, -radius)];
+    corners(feature).into_iter().flat_map(about).collect()
 }
 
 impl Drawing {
@@ -107,6 +113,7 @@ impl Drawing {
             MeasureMark::Line { of, from, .. } => vec![of, from],
             MeasureMark::Arc { at, .. } => vec![at],
         }));
+        points.extend(scene.features.iter().flat_map(rims));
         let ends = [0, 1, 2].map(|i| {
             let values = points.iter().map(|point| point[i]);
             [values.clone().fold(f64::MAX, f64::min), values.fold(f64::MIN, f64::max)]
@@ -124,11 +131,12 @@ impl Drawing {
         for part in 0..scene.parts.len() {
             drawing.add_part(scene, part);
         }
-        for index in 0..scene.features.len() {
-            drawing.add_feature(scene, index, extent);
-        }
+        // Joints lie below the points of features, whose colour is seen then.
         for index in 0..scene.joints.len() {
             drawing.add_joint(scene, index, extent);
+        }
+        for index in 0..scene.features.len() {
+            drawing.add_feature(scene, index, extent);
         }
         for index in 0..scene.measures.len() {
             drawing.add_measure(scene, index, extent);
@@ -227,7 +235,11 @@ impl Drawing {
             return;
         }
         let at = self.point(joint.at, joint.between[1]);
-        for end in ends {
+        for (end, feature) in ends.into_iter().zip(joint.between) {
+            // Faces and axes reach to the joint.
+            if !matches!(scene.features[feature].outline, FeatureOutline::Ball(_) | FeatureOutline::Triad) {
+                continue;
+            }
             let across = [0, 1, 2].map(|i| end.at[i] - at.at[i]);
             if dot(across, across).sqrt() * self.step > 1e-3 * extent {
                 let points = vec![at, end];

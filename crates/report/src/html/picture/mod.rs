@@ -20,7 +20,7 @@ use std::fmt::Write;
 
 use crate::Report;
 use crate::assembly::{OwnerShare, ReportedAssembly, ShareOwner, owner_shares};
-use crate::document::number::{percent, plural};
+use crate::document::number::plural;
 use crate::document::svg::escaped;
 use crate::figures::{Figures, Named};
 use drawing::{Drawing, DrawnPoint, MarkForm};
@@ -112,8 +112,8 @@ fn pictured(report: &Report, assembly: &ReportedAssembly, drawing: &Drawing, of:
     let measured = scene.measured.get(of).map_or(&[][..], Vec::as_slice);
     for mark in drawing.marks.iter().filter(|mark| mark.measure.is_some_and(|measure| measured.contains(&measure))) {
         let middle = match mark.form {
-            MarkForm::Dimension => middle(&mark.points),
-            MarkForm::Path(_) if mark.class == "arc" => mark.points[mark.points.len() / 2],
+            MarkForm::Dimension => mark.points.clone(),
+            MarkForm::Path(_) if mark.class == "arc" => vec![mark.points[mark.points.len() / 2]],
             _ => continue,
         };
         let text = scene.measures[mark.measure.unwrap_or(0)].name.clone();
@@ -125,7 +125,7 @@ fn pictured(report: &Report, assembly: &ReportedAssembly, drawing: &Drawing, of:
         }
     }
     for (part, at) in scene.parts.iter().zip(&drawing.parts) {
-        labels.push(SheetLabel { kind: LabelKind::Part, text: part.name.clone(), at: *at });
+        labels.push(SheetLabel { kind: LabelKind::Part, text: part.name.clone(), at: vec![*at] });
     }
     let words = words(scene, one.name(), &shares, measured);
     PicturedCharacteristic { name: one.name().to_owned(), shares, labels, words }
@@ -136,23 +136,15 @@ fn numbered(shares: &[OwnerShare]) -> impl Iterator<Item = &OwnerShare> {
     shares.iter().take(NUMBERED).take_while(|share| heat(share.value) > 0)
 }
 
-/// Point in the middle of two, which moves with the first.
-fn middle(points: &[DrawnPoint]) -> DrawnPoint {
-    let at = [0, 1, 2].map(|i| (0.5 * (points[0].at[i] + points[1].at[i])).round());
-    DrawnPoint { at, body: points[0].body }
-}
-
 /// Places of a contribution in the picture: of its feature or joint, or of each feature that shares it.
-fn anchors(drawing: &Drawing, scene: &AssemblyScene, share: &OwnerShare) -> Vec<DrawnPoint> {
-    let of_feature = |&feature: &usize| DrawnPoint { at: drawing.bodies[feature].map(f64::round), body: feature };
+fn anchors(drawing: &Drawing, scene: &AssemblyScene, share: &OwnerShare) -> Vec<Vec<DrawnPoint>> {
+    let of_feature = |&feature: &usize| vec![DrawnPoint { at: drawing.bodies[feature].map(f64::round), body: feature }];
     match &share.owner {
         ShareOwner::Feature(feature) => vec![of_feature(feature)],
         ShareOwner::Joint(joint) => {
             let owner = Some(scene.features.len() + joint);
             let mark = drawing.marks.iter().find(|mark| mark.owner == owner);
-            mark.map(|mark| if mark.points.len() > 1 { middle(&mark.points) } else { mark.points[0] })
-                .into_iter()
-                .collect()
+            mark.map(|mark| mark.points.clone()).into_iter().collect()
         }
         ShareOwner::Shared(features) => features.iter().map(of_feature).collect(),
         ShareOwner::Formula => Vec::new(),
@@ -181,7 +173,7 @@ fn words(scene: &AssemblyScene, name: &str, shares: &[OwnerShare], measured: &[u
         let _ = write!(text, " {}.", spans.join(", "));
     }
     let named: Vec<String> = (shares.iter().take(NAMED).filter(|share| heat(share.value) > 0))
-        .map(|share| format!("{} {} %", share.name, percent(share.value)))
+        .map(|share| format!("{} {:.0} %", share.name, 100.0 * share.value))
         .collect();
     if !named.is_empty() {
         let _ = write!(text, " Most of the variance of {name} comes from {}.", named.join(", "));

@@ -66,7 +66,10 @@
   /// Labels at places where they overlap least.
   const place = (sheet, project) => {
     const { width, height } = sheet, taken = [[0, height - 68, 68, height]], made = [];
-    const labels = data.labels[state.of].map(([kind, text, point, body]) => ({ kind, text, at: project(moved(point, body, state.sigma)) }));
+    const labels = data.labels[state.of].map(([kind, text, points]) => {
+      const all = points.map(([point, body]) => moved(point, body, state.sigma));
+      return { kind, text, at: project([0, 1, 2].map((i) => all.reduce((sum, point) => sum + point[i], 0) / all.length)) };
+    });
     for (const { kind, at: [x, y] } of labels) if (kind !== "of-part") taken.push([x - 4, y - 4, x + 4, y + 4]);
     const common = (a, b) => Math.max(0, Math.min(a[2], b[2]) - Math.max(a[0], b[0])) * Math.max(0, Math.min(a[3], b[3]) - Math.max(a[1], b[1]));
     for (const { kind, text, at } of labels) {

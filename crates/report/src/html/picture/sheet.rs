@@ -51,7 +51,8 @@ pub(super) enum LabelKind {
 pub(super) struct SheetLabel {
     pub(super) kind: LabelKind,
     pub(super) text: String,
-    pub(super) at: DrawnPoint,
+    /// Points in whose middle it belongs.
+    pub(super) at: Vec<DrawnPoint>,
 }
 
 /// A sheet with its projection.
@@ -166,12 +167,12 @@ impl AssemblySheet {
         let middle = [0.5 * self.size.width, 0.5 * self.height];
         let mut taken: Vec<[f64; 4]> = vec![[0.0, self.height - 68.0, 68.0, self.height]];
         taken.extend(labels.iter().filter(|label| label.kind != LabelKind::Part).map(|label| {
-            let [x, y] = self.projection.at(label.at.at);
+            let [x, y] = self.projection.at(label.place());
             [x - 4.0, y - 4.0, x + 4.0, y + 4.0]
         }));
         let mut placed = Vec::with_capacity(labels.len());
         for label in labels {
-            let at = self.projection.at(label.at.at);
+            let at = self.projection.at(label.place());
             let wide = label.wide();
             let outward = libm::atan2(at[1] - middle[1], at[0] - middle[0]);
             let mut best = (f64::MAX, at);
@@ -253,6 +254,11 @@ impl AssemblySheet {
 }
 
 impl SheetLabel {
+    /// Middle of its points.
+    fn place(&self) -> [f64; 3] {
+        [0, 1, 2].map(|i| self.at.iter().map(|point| point.at[i]).sum::<f64>() / self.at.len().max(1) as f64)
+    }
+
     /// Width of the label in pixels.
     fn wide(&self) -> f64 {
         match self.kind {
