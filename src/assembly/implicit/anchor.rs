@@ -16,6 +16,9 @@ pub(in crate::assembly) struct Anchor {
     pub(super) condition: f64,
     /// Index of the unknown that is determined least.
     pub(super) weakest: usize,
+    /// True if conditions choose between expressions, so that nominal slopes predict nothing beyond the next change. The first Newton step
+    /// at the point is the prediction then.
+    pub(super) bends: bool,
 }
 
 /// Greatest distance of a root from its prediction, as part of the distance moved, at which it is accepted without following it.

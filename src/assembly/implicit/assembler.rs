@@ -4,17 +4,21 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use faer::Mat;
 
+use crate::assembly::SwitchKind;
 use crate::assembly::formula::FormulaSet;
 use crate::assembly::implicit::anchor::{Anchor, OFF, SLACK, STEPS};
 use crate::assembly::implicit::batch::BatchSolver;
 use crate::assembly::implicit::conditions::Conditions;
 use crate::assembly::implicit::error::AssemblyFailure;
 use crate::assembly::implicit::newton::{Root, Search, Stuck};
+use crate::assembly::implicit::subject::PressedJoint;
 use crate::assembly::implicit::system::System;
 
 /// Solver of the conditions at any point, once the nominal state is known.
 pub(in crate::assembly) struct Assembler {
     pub(super) system: System,
+    /// Contacts of the joints that press a part.
+    pub(in crate::assembly) pressed: Vec<PressedJoint>,
     /// Dimensions to which the start values belong.
     nominal: Vec<f64>,
     anchor: Mutex<Option<Result<Arc<Anchor>, Box<AssemblyFailure>>>>,
@@ -41,7 +45,13 @@ impl Assembler {
     /// unknowns.
     pub(in crate::assembly) fn new(conditions: &Conditions, set: &FormulaSet, first: usize, given: usize) -> Self {
         let system = System::new(conditions, set, first, given);
-        Self { system, nominal: conditions.nominal.clone(), anchor: Mutex::new(None), batch: OnceLock::new() }
+        Self {
+            system,
+            pressed: conditions.pressed.clone(),
+            nominal: conditions.nominal.clone(),
+            anchor: Mutex::new(None),
+            batch: OnceLock::new(),
+        }
     }
 
     pub(in crate::assembly) fn len(&self) -> usize {
@@ -121,6 +131,7 @@ impl Assembler {
             slopes,
             condition: condition.number,
             weakest: condition.unknown,
+            bends: set.switches(&system.formulas).iter().any(|switch| switch.kind == SwitchKind::Branch),
         })
     }
 
@@ -133,7 +144,9 @@ impl Assembler {
     ) -> Result<Vec<f64>, AssemblyFailure> {
         let search = Search { system: &self.system, scales: &anchor.scales, given };
         // The direct search from the prediction is enough if it ends near the prediction, on the same branch, in few steps.
-        let predicted = search.moved(&anchor.u, &self.prediction(anchor, given), 1.0);
+        let change = if anchor.bends { search.first_step(&anchor.u) } else { None };
+        let change = change.unwrap_or_else(|| self.prediction(anchor, given));
+        let predicted = search.moved(&anchor.u, &change, 1.0);
         let direct = search.from(&predicted);
         if let Ok(root) = &direct {
             let way = search.distance(&predicted, &anchor.u);

@@ -253,6 +253,12 @@ impl BatchSolver {
             });
             on_this_processor(Judge { progress: &mut workspace.progress, linear: block.linear });
             on_this_processor(Move { block, columns: &self.unknowns, system, workspace });
+            if pass == 0 && anchor.bends {
+                for &unknown in &block.unknowns {
+                    let found = workspace.lanes.column(self.unknowns[unknown]);
+                    workspace.predicted[unknown].copy_from_slice(found);
+                }
+            }
             if !workspace.progress.state.contains(&OPEN) {
                 break;
             }

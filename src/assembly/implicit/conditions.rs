@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::assembly::formula::{Formula, FormulaSet};
-use crate::assembly::implicit::subject::EquationSubject;
+use crate::assembly::implicit::subject::{EquationSubject, PressedJoint};
 
 /// Value that closure conditions determine.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +50,8 @@ pub struct Conditions {
     pub(super) nominal: Vec<f64>,
     /// Joints of rigid parts, by the names of their equations.
     pub(super) subjects: BTreeMap<String, EquationSubject>,
+    /// Contacts of the joints that press a part.
+    pub(super) pressed: Vec<PressedJoint>,
 }
 
 /// Reason why conditions determine no state.
@@ -180,13 +182,19 @@ impl Conditions {
             let unknowns = unknowns.into_iter().map(|unknown| unknown.name).collect();
             return Err(ConditionsError::Unbalanced { equations, unknowns });
         }
-        Ok(Self { unknowns, conditions, nominal, subjects: BTreeMap::new() })
+        Ok(Self { unknowns, conditions, nominal, subjects: BTreeMap::new(), pressed: Vec::new() })
     }
 
     /// Sets the joints of rigid parts that equations belong to, by the names of the equations. Failures name the joints then.
     #[must_use]
     pub fn with_subjects(self, subjects: impl IntoIterator<Item = (String, EquationSubject)>) -> Self {
         Self { subjects: subjects.into_iter().collect(), ..self }
+    }
+
+    /// Sets the contacts of joints that press a part. Changes between their sets have names then.
+    #[must_use]
+    pub fn with_pressed(self, pressed: Vec<PressedJoint>) -> Self {
+        Self { pressed, ..self }
     }
 
     /// Returns for every equation the joint that it belongs to, two entries for a loop.

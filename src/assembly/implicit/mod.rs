@@ -38,7 +38,7 @@ mod tests;
 
 pub use conditions::{Condition, Conditions, ConditionsError, Link, Unknown};
 pub use error::AssemblyFailure;
-pub use subject::{EquationSubject, OpenJoint};
+pub use subject::{EquationSubject, OpenJoint, PressedJoint};
 
 pub(super) use anchor::Anchor;
 pub(super) use assembler::Assembler;

@@ -55,6 +55,13 @@ impl Search<'_> {
         Linear::new(Mat::from_fn(n, n, |i, j| jacobian[(i, j)] * unknowns[j] / equations[i]))
     }
 
+    /// Returns the full Newton step at a state, in scales. Returns None if it has no value.
+    pub(super) fn first_step(&self, u: &[f64]) -> Option<Vec<f64>> {
+        let (scaled, norm) = self.scaled(&self.system.values(self.given, u));
+        let linear = self.linear(u).filter(|_| norm.is_finite())?;
+        Some(linear.solve(&scaled.iter().map(|value| -value).collect::<Vec<f64>>()))
+    }
+
     /// Returns the scaled equations and their norm, which is infinite if an equation has no value.
     fn scaled(&self, values: &[f64]) -> (Vec<f64>, f64) {
         let scaled: Vec<f64> = values.iter().zip(&self.scales.equations).map(|(value, size)| value / size).collect();

@@ -23,6 +23,17 @@ pub enum EquationSubject {
     },
 }
 
+/// Joint that presses a part against contacts, by the formulas of the conditions.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PressedJoint {
+    /// Name of the joint.
+    pub joint: String,
+    /// Contacts that carry the force, for each set on which the part can rest.
+    pub sets: Vec<Vec<String>>,
+    /// Comparisons that choose, as written in the formulas. Where the one of index k is true, set k + 1 goes before all sets up to k.
+    pub changes: Vec<String>,
+}
+
 /// Joint that does not close at a point, with the amount.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpenJoint {
