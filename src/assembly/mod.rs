@@ -46,7 +46,7 @@ pub(crate) use responses::all_finite;
 pub use run::{Progress, Run};
 pub use signature::{Input, Output, Signature};
 pub(crate) use states::{State, States};
-pub use switch::{Switch, SwitchKind, Switches};
+pub use switch::{ContactSets, Switch, SwitchKind, Switches};
 
 use crate::warning::Warning;
 use sensitol_numeric::power::Power;

@@ -16,6 +16,37 @@ pub enum SwitchKind {
     Edge,
     /// The value grows without bound on either side: a divisor, `tan`.
     Pole,
+    /// A part that is pressed rests on another set of contacts.
+    Contact,
+}
+
+/// Sets of contacts on which a pressed part can rest.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ContactSets {
+    /// Name of the joint.
+    pub joint: String,
+    /// Contacts that carry the force, for each set.
+    pub sets: Vec<Vec<String>>,
+    /// Places in the list of switches. Where the margin of the one of index k is positive, set k + 1 goes before all sets up to k.
+    pub switches: Vec<usize>,
+}
+
+impl ContactSets {
+    /// Returns the index of the set on which the part rests, by the margin of each switch of the output. Returns None at a point without a
+    /// state.
+    ///
+    /// ```
+    /// use sensitol::assembly::ContactSets;
+    /// let sets = [["a", "b"], ["b", "c"], ["c", "a"]].map(|set| set.map(str::to_owned).to_vec());
+    /// let stand = ContactSets { joint: "stand".into(), sets: sets.to_vec(), switches: vec![0, 2] };
+    /// assert_eq!(stand.resting(|switch| [0.1, 7.0, -0.2][switch]), Some(1));
+    /// assert_eq!(stand.resting(|_| f64::NAN), None);
+    /// ```
+    pub fn resting(&self, margin: impl Fn(usize) -> f64) -> Option<usize> {
+        let margins: Vec<f64> = self.switches.iter().map(|&switch| margin(switch)).collect();
+        let last = margins.iter().rposition(|&margin| margin > 0.0).map_or(0, |k| k + 1);
+        (!margins.iter().any(|margin| margin.is_nan())).then_some(last)
+    }
 }
 
 /// Place in a definition at which an output changes its form.
@@ -38,6 +69,8 @@ pub struct Switches {
     pub list: Vec<Switch>,
     /// True if there are no others. A part of the output that is a black box may have any.
     pub complete: bool,
+    /// Sets of contacts, for each joint that presses a part.
+    pub contacts: Vec<ContactSets>,
 }
 
 impl Switch {

@@ -24,7 +24,7 @@ mod text;
 use crate::summary::StopReason;
 pub use advice::Advice;
 pub use aggregate::aggregated;
-pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
+pub use terms::{Change, ContactShare, Counted, Ended, Figure, Loss, NameKind};
 
 warnings! {
     /// None of the analysed characteristics can depend on these dimensions.
@@ -542,6 +542,19 @@ warnings! {
         probability: f64,
         /// Points of a sample that lie beyond on average. None if the figures do not come from a sample.
         points: Option<f64>,
+    };
+    /// A pressed part rests on one set of contacts in some assemblies and on another one in others.
+    ContactSwitch = "contact-switch" by surface::contact_switch {
+        /// The characteristic.
+        characteristic: String,
+        /// The joint, in words.
+        switch: String,
+        /// The change there.
+        change: Change,
+        /// The sets of contacts with their shares.
+        contacts: Vec<ContactShare>,
+        /// True if the figures come from a sample.
+        sampled: bool,
     };
     /// A divisor passes through 0 within the assemblies.
     Pole = "pole" by surface::pole {

@@ -2,7 +2,7 @@
 
 use crate::method_kind::Method;
 use crate::warning::text::{Text, likewise, names, part, places, say, significant};
-use crate::warning::{Advice, Change, Figure};
+use crate::warning::{Advice, Change, ContactShare, Figure};
 
 pub(super) fn rss_invalid(characteristic: &str, mean_shift: &f64, variance: &f64) -> Text {
     say(format!(
@@ -213,6 +213,35 @@ pub(super) fn switch(
         part(*probability)
     ));
     if *change == Change::Edge { text } else { text.advise(Advice::Sample { points: None }) }
+}
+
+/// Most sets of contacts in a text; all are in the data.
+const SETS: usize = 4;
+
+pub(super) fn contact_switch(
+    characteristic: &str,
+    switch: &str,
+    change: &Change,
+    contacts: &[ContactShare],
+    sampled: &bool,
+) -> Text {
+    let does = if *change == Change::Jump { "jumps" } else { "bends" };
+    let mut met: Vec<&ContactShare> = contacts.iter().filter(|of| of.share > 0.0).collect();
+    met.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let share = |of: &&ContactShare| {
+        let (names, percent) = (of.contacts.join(", "), 100.0 * of.share);
+        format!("on {names} in {percent:.1} % ± {:.1}", 100.0 * of.error)
+    };
+    let mut sets: Vec<String> = met.iter().take(SETS).map(share).collect();
+    if met.len() > SETS {
+        let rest: f64 = met[SETS..].iter().map(|of| of.share).sum();
+        sets.push(format!("on one of {} other sets in {:.1} %", met.len() - SETS, 100.0 * rest));
+    }
+    let shown = format!("`{characteristic}` {does} where {switch} change. The part rests {}.", sets.join("; "));
+    if *sampled {
+        return say(shown);
+    }
+    say(format!("{shown} Derivatives hold for one of these sets only.")).advise(Advice::Sample { points: None })
 }
 
 pub(super) fn pole(characteristic: &str, switch: &str, probability: &f64) -> Text {

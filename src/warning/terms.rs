@@ -28,6 +28,17 @@ pub enum Change {
     Edge,
 }
 
+/// Share of the assemblies in which a pressed part rests on a set of contacts.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ContactShare {
+    /// Contacts that carry the force.
+    pub contacts: Vec<String>,
+    /// Share of the assemblies.
+    pub share: f64,
+    /// Standard error of the share.
+    pub error: f64,
+}
+
 /// Part of a derivative that is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

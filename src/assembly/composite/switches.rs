@@ -1,9 +1,23 @@
 //! Switches and degree of the outputs of a composite.
 
 use crate::assembly::composite::{Composite, Origin, Source};
-use crate::assembly::implicit::RowSolution;
-use crate::assembly::{Points, Polynomial, Run, Switch, SwitchKind, Switches};
+use crate::assembly::implicit::{PressedJoint, RowSolution};
+use crate::assembly::{ContactSets, Points, Polynomial, Run, Switch, SwitchKind, Switches};
 use sensitol_numeric::parallel::prelude::*;
+
+/// Marks the comparisons of a joint that presses as changes of its contacts, if all of them are among the switches.
+fn name_contacts(switches: &mut Switches, pressed: &PressedJoint) {
+    let place = |change: &String| {
+        switches.list.iter().position(|switch| switch.kind == SwitchKind::Branch && switch.text == *change)
+    };
+    let Some(places) = pressed.changes.iter().map(place).collect::<Option<Vec<usize>>>() else { return };
+    for &place in &places {
+        let text = format!("the contacts of joint `{}`", pressed.joint);
+        switches.list[place] = Switch { kind: SwitchKind::Contact, text, formula: None, span: 0..0 };
+    }
+    let (joint, sets) = (pressed.joint.clone(), pressed.sets.clone());
+    switches.contacts.push(ContactSets { joint, sets, switches: places });
+}
 
 /// Rows whose unknowns one task solves.
 const ROWS: usize = 128;
@@ -26,8 +40,11 @@ impl Composite {
     pub(super) fn switches_of(&self, output: usize) -> Option<Switches> {
         let origin = self.outputs[output];
         let needs = self.needs(origin);
-        let mut switches = Switches { list: self.formulas.switches(&self.switching(origin)), complete: true };
+        let list = self.formulas.switches(&self.switching(origin));
+        let mut switches = Switches { list, complete: true, contacts: Vec::new() };
         if needs.unknowns {
+            let pressed = self.assembler.iter().flat_map(|assembler| &assembler.pressed);
+            pressed.for_each(|joint| name_contacts(&mut switches, joint));
             let text = "the solution of the closure conditions".to_owned();
             switches.list.push(Switch { kind: SwitchKind::Edge, text, formula: None, span: 0..0 });
         }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use sensitol::warning::aggregate::aggregated;
 
-use sensitol::warning::{Advice, Change, Counted, Ended, Figure, Loss, NameKind, Warning};
+use sensitol::warning::{Advice, Change, ContactShare, Counted, Ended, Figure, Loss, NameKind, Warning};
 use sensitol::{Method, StopReason, analyze};
 use sensitol_study::Study;
 
@@ -50,6 +50,18 @@ fn every() -> Vec<Warning> {
         residual,
         from: 2.0,
         share: 0.0228,
+    };
+    let contacts = |sampled, sets: usize| Warning::ContactSwitch {
+        characteristic: characteristic(),
+        switch: text("the contacts of joint `stand`"),
+        change: Change::Kink,
+        contacts: (0..sets)
+            .map(|set| {
+                let share = 1.0 / sets as f64;
+                ContactShare { contacts: vec![text("leg1"), format!("leg{}", 2 + set)], share, error: 0.004 }
+            })
+            .collect(),
+        sampled,
     };
     let (output, expected, found) = (|| text("gap"), Some(0.2), Some(0.3));
     let (times, points, suspects) = (2, 7, || vec![text("a = 1.5"), text("b = 2.5")]);
@@ -283,6 +295,8 @@ fn every() -> Vec<Warning> {
             probability: 0.01,
             points: None,
         },
+        contacts(false, 2),
+        contacts(true, 6),
         Warning::Pole { characteristic: characteristic(), switch: text("`1/a`"), probability: 1e-5 },
         Warning::FigureOff {
             characteristic: characteristic(),
