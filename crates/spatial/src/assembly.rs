@@ -155,6 +155,28 @@ pub struct PartJoint {
     pub tilt: Option<[Quantity; 2]>,
     /// True if round surfaces lie side by side, so that the sum of their radii counts and not the difference.
     pub side_by_side: bool,
+    /// Force that presses a part against contacts. The features of the joint are the plane and the first contact then.
+    pub press: Option<Press>,
+}
+
+/// Force that presses a part against points, some of which touch a plane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Press {
+    /// Points that can touch the plane, in their order.
+    pub targets: Vec<FeatureId>,
+    /// Direction of the force in the assembly, of length 1.
+    pub force: [f64; 3],
+    /// Feature at which the force acts. None for the middle of the contacts, or for the origin of the plane if its part is pressed.
+    pub weight: Option<FeatureId>,
+}
+
+impl Press {
+    /// Index of the part that is pressed: that of `weight`, or the one with the contacts unless it stands still.
+    pub(crate) fn part(&self, assembly: &Assembly, joint: &PartJoint) -> usize {
+        let (plane, points) = (joint.between[0].part, joint.between[1].part);
+        let without = if assembly.parts[points].ground { plane } else { points };
+        self.weight.map_or(without, |id| id.part)
+    }
 }
 
 /// A coordinate of a frame.
@@ -218,6 +240,11 @@ impl Assembly {
     /// Full name of a feature, such as `housing.bore`.
     pub fn feature_name(&self, id: FeatureId) -> String {
         format!("{}.{}", self.parts[id.part].name, self.feature(id).name)
+    }
+
+    /// Names of contacts within their part.
+    pub(crate) fn contact_names(&self, press: &Press) -> Vec<String> {
+        press.targets.iter().map(|&id| self.feature(id).name.clone()).collect()
     }
 
     /// Indices of the parts that move.

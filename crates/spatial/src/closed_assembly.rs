@@ -12,6 +12,8 @@ use crate::mobility::{FreeMotion, Mobility};
 use crate::number::Number;
 use crate::part_pose::PartPose;
 use crate::placement::{LocalFeature, PlacedFeature, Pose, Rotation, half_angle, product, rodrigues, rotation_vector};
+use crate::press::check_features;
+use crate::pressed_contacts::PressedContacts;
 use crate::vector::Vector;
 
 /// An unknown of a pose.
@@ -53,6 +55,8 @@ pub struct ClosedAssembly {
     pub mobility: Mobility,
     /// Poses at the nominal dimensions.
     pub poses: Vec<PartPose>,
+    /// Contacts of the joints that press.
+    pub pressed: Vec<PressedContacts>,
 }
 
 /// Greatest rotation from the start, in radians, that one half-angle vector describes. Half a turn is singular.
@@ -97,7 +101,7 @@ impl Assembly {
     ///     ],
     ///     joints: vec![PartJoint {
     ///         name: "seat".into(), kind: JointKind::Contact, between: [id(0, 0), id(1, 0)],
-    ///         takes: None, value: None, offset: None, tilt: None, side_by_side: false,
+    ///         takes: None, value: None, offset: None, tilt: None, side_by_side: false, press: None,
     ///     }],
     ///     length_unit: None,
     ///     measures: vec![Measure { name: "height".into(), kind: MeasureKind::Distance, between: [id(1, 1), id(0, 0)] }],
@@ -116,10 +120,12 @@ impl Assembly {
         if let Some(index) = closure.arbitrary_choice() {
             return Err(self.wrong_order(index));
         }
+        closure.check_presses()?;
         let doubtful = closure.check_redundancy()?;
         if !closed {
             return Err(self.open(&closure));
         }
+        closure.check_rocking()?;
         self.check_facing(&closure)?;
         let motions = closure.free_motions();
         closure.check_free(&motions)?;
@@ -168,6 +174,11 @@ impl Assembly {
                     false => "parts that stand still".into(),
                 };
                 return Err(SpatialError::SamePart { joint: name, index, what });
+            }
+            if let Some(press) = &joint.press {
+                let wrong = |fault| SpatialError::Press { joint: name.clone(), index, fault: Box::new(fault) };
+                check_features(self, joint, press).map_err(wrong)?;
+                continue;
             }
             let kinds = joint.between.map(|id| self.feature(id).kind);
             let Some(known) = joint.kind.freedoms(kinds) else {
@@ -248,9 +259,9 @@ impl Assembly {
 }
 
 /// Writes the equations of an assembly whose nominal state is known.
-struct Writer<'a> {
-    assembly: &'a Assembly,
-    closure: &'a Closure<'a>,
+pub(crate) struct Writer<'a> {
+    pub(crate) assembly: &'a Assembly,
+    pub(crate) closure: &'a Closure<'a>,
     unknowns: Vec<PoseUnknown>,
     formulas: Vec<(NamedFormula, usize)>,
     poses: Vec<Pose<Expression>>,
@@ -333,7 +344,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Gives a long formula a name, so that it is evaluated once.
-    fn named(&mut self, name: String, (part, is_length): (usize, bool), formula: &Expression) -> Expression {
+    pub(crate) fn named(&mut self, name: String, (part, is_length): (usize, bool), formula: &Expression) -> Expression {
         if formula.is_short() {
             return formula.clone();
         }
@@ -343,7 +354,7 @@ impl<'a> Writer<'a> {
     }
 
     /// A feature at its place, with names for its coordinates.
-    fn feature(&mut self, id: FeatureId) -> PlacedFeature<Expression> {
+    pub(crate) fn feature(&mut self, id: FeatureId) -> PlacedFeature<Expression> {
         if let Some(known) = self.features.get(&id) {
             return known.clone();
         }
@@ -367,8 +378,14 @@ impl<'a> Writer<'a> {
     }
 
     fn written(mut self, motions: &[FreeMotion]) -> ClosedAssembly {
-        let mut lines = Vec::new();
+        let (mut lines, mut pressed) = (Vec::new(), Vec::new());
         for (index, joint) in self.assembly.joints.iter().enumerate() {
+            if let Some(press) = &joint.press {
+                let (equations, contacts) = self.pressed(index, press);
+                lines.extend(equations.into_iter().map(|line| (line, Some(index))));
+                pressed.push(contacts);
+                continue;
+            }
             let kinds = joint.between.map(|id| self.assembly.feature(id).kind);
             let [a, b] = joint.between.map(|id| self.feature(id));
             let zero = || Expression::constant(0.0);
@@ -420,6 +437,7 @@ impl<'a> Writer<'a> {
                 doubtful: Vec::new(),
             },
             poses,
+            pressed,
             unknowns: self.unknowns,
             equations: lines,
             formulas,

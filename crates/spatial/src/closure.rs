@@ -4,7 +4,7 @@ use faer::Mat;
 
 use crate::assembly::{Assembly, FeatureId, JointKind, Quantity};
 use crate::dual::Dual;
-use crate::joint::{Equation, Holds, JointNumbers, equations};
+use crate::joint::{Equation, Holds, JointNumbers, equations, opening};
 use crate::number::Number;
 use crate::placement::{LocalFeature, Place, PlacedFeature, Pose, half_angle, product, rodrigues};
 use crate::vector::Vector;
@@ -28,6 +28,7 @@ const CHOICES: usize = 4;
 pub(crate) type Used = Vec<usize>;
 
 /// An assembly with poses, and the equations that count.
+#[derive(Clone)]
 pub(crate) struct Closure<'a> {
     pub(crate) assembly: &'a Assembly,
     /// Indices of the parts that move, in the order of the unknowns.
@@ -65,7 +66,7 @@ impl<'a> Closure<'a> {
     }
 
     /// Poses with the six unknowns of every moving part: a half-angle vector from the present pose, and the place of the origin.
-    fn poses(&self) -> Vec<Pose<Dual>> {
+    pub(crate) fn poses(&self) -> Vec<Pose<Dual>> {
         let count = 6 * self.moving.len();
         let pose = |(part, place): (usize, &Place)| match self.moving.iter().position(|&moving| moving == part) {
             None => Pose::still(place),
@@ -79,16 +80,20 @@ impl<'a> Closure<'a> {
         self.places.iter().enumerate().map(pose).collect()
     }
 
-    fn placed(&self, poses: &[Pose<Dual>], id: FeatureId) -> PlacedFeature<Dual> {
+    pub(crate) fn placed(&self, poses: &[Pose<Dual>], id: FeatureId) -> PlacedFeature<Dual> {
         let number = |quantity: &Quantity| Dual::constant(quantity.value);
         poses[id.part].placed(&LocalFeature::new(self.assembly.feature(id), &number))
     }
 
-    /// All equations of a joint at the present poses.
-    fn equations(&self, poses: &[Pose<Dual>], joint: usize) -> Vec<Equation<Dual>> {
+    /// All equations of a joint at the present poses, one for each contact if it presses.
+    pub(crate) fn equations(&self, poses: &[Pose<Dual>], joint: usize) -> Vec<Equation<Dual>> {
         let joint = &self.assembly.joints[joint];
         let kinds = joint.between.map(|id| self.assembly.feature(id).kind);
         let [a, b] = joint.between.map(|id| self.placed(poses, id));
+        if let Some(press) = &joint.press {
+            let gap = |&target: &FeatureId| opening(&a, &self.placed(poses, target));
+            return press.targets.iter().map(gap).collect();
+        }
         let value = |quantity: &Option<Quantity>| quantity.as_ref().map_or(0.0, |quantity| quantity.value);
         let two = |parts: &Option<[Quantity; 2]>| {
             parts.as_ref().map_or([0.0; 2], |parts| parts.each_ref().map(|part| part.value)).map(Dual::constant)
@@ -108,13 +113,13 @@ impl<'a> Closure<'a> {
 
     /// Row of an equation: residual and derivatives in units of the assembly's size. The columns are rotations in radians and displacements
     /// in units of the size.
-    fn row(&self, equation: &Equation<Dual>) -> (f64, Vec<f64>) {
+    pub(crate) fn row(&self, equation: &Equation<Dual>) -> (f64, Vec<f64>) {
         let unit = if equation.holds == Holds::Distance { self.size } else { 1.0 };
         (equation.residual.value() / unit, self.gradient(&equation.residual).iter().map(|slope| slope / unit).collect())
     }
 
     /// Derivatives of a number by rotations in radians and displacements in units of the size.
-    fn gradient(&self, number: &Dual) -> Vec<f64> {
+    pub(crate) fn gradient(&self, number: &Dual) -> Vec<f64> {
         // A half-angle vector is half a rotation.
         let scale = |column: usize| if column % 6 < 3 { 0.5 } else { self.size };
         (0..6 * self.moving.len()).map(|column| number.slope(column) * scale(column)).collect()
@@ -193,6 +198,14 @@ impl<'a> Closure<'a> {
         for (index, joint) in self.assembly.joints.iter().enumerate() {
             let all = self.equations(&poses, index);
             let rows: Vec<Vec<f64>> = all.iter().map(|equation| self.row(equation).1).collect();
+            if let Some(press) = &joint.press {
+                let chosen = self.resting(index, press, &before);
+                for &row in &chosen {
+                    add_orthogonal(&mut before, &rows[row]);
+                }
+                used.push(chosen);
+                continue;
+            }
             let directions = all.iter().filter(|equation| equation.holds == Holds::Direction).count();
             let takes = joint.takes.unwrap_or(all.len()).min(all.len());
             // The distances stay, and the directions are taken in the order of their new part.
@@ -290,7 +303,7 @@ pub(crate) fn constant_rotation(vector: [f64; 3]) -> crate::placement::Rotation 
 }
 
 /// Shortest step with the least residual, along the directions that are determined.
-fn least_step(jacobian: &Mat<f64>, residuals: &[f64]) -> Vec<f64> {
+pub(crate) fn least_step(jacobian: &Mat<f64>, residuals: &[f64]) -> Vec<f64> {
     let columns = jacobian.ncols();
     let Ok(svd) = jacobian.thin_svd() else { return vec![0.0; columns] };
     let (u, s, v) = (svd.U(), svd.S().column_vector(), svd.V());

@@ -1,5 +1,7 @@
 //! Faults of an assembly in space.
 
+use crate::press_fault::PressFault;
+
 /// Part of a study to which a fault belongs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Subject {
@@ -110,6 +112,16 @@ pub enum SpatialError {
         /// Later joint of the same parts that takes all freedoms; None if there is none.
         primary: Option<String>,
     },
+    /// A force that holds a part against no contacts.
+    #[error("joint `{joint}` {fault}")]
+    Press {
+        /// Name of the joint.
+        joint: String,
+        /// Index of the joint.
+        index: usize,
+        /// Reason.
+        fault: Box<PressFault>,
+    },
     /// A motion that no joint stops and a measure depends on.
     #[error("{motion}, and `{measure}` depends on it")]
     Free {
@@ -156,6 +168,7 @@ impl SpatialError {
             | Self::SamePart { index, .. }
             | Self::Takes { index, .. }
             | Self::NoDirection { index, .. }
+            | Self::Press { index, .. }
             | Self::WrongOrder { index, .. }
             | Self::OverConstrained { index, .. }
             | Self::Open { index, .. }
@@ -176,6 +189,7 @@ impl SpatialError {
             Self::NoDirection { .. } => {
                 "place the parts apart with `at`, or hold two offsets: hole = \"part.bore\", pin = \"part.pin\"".into()
             }
+            Self::Press { fault, .. } => fault.help(),
             Self::Takes { known, .. } => format!("write takes = {known}"),
             Self::WrongOrder { joint, all, primary: Some(primary), .. } => {
                 format!("the primary datum takes {all}: put `{joint}` after `{primary}`, or say takes = {all}")

@@ -84,6 +84,13 @@ impl Expression {
         }
     }
 
+    /// Formula that has the value of `then` where `greater` is the greater number, and of `otherwise` elsewhere.
+    pub(crate) fn choice([greater, than]: [&Self; 2], then: &Self, otherwise: &Self) -> Self {
+        let value = if greater.value > than.value { then.value } else { otherwise.value };
+        let text = format!("if({} > {}, {}, {})", greater.text(), than.text(), then.text(), otherwise.text());
+        Self { value, form: Form::Text(text, Binding::Whole) }
+    }
+
     fn is(&self, value: f64) -> bool {
         self.is_constant() && self.value == value
     }

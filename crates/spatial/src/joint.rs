@@ -140,6 +140,12 @@ pub(crate) fn equations<S: Number>(
     }
 }
 
+/// Opening of a contact that a force presses: the distance of a point from a plane, less its radius.
+pub(crate) fn opening<S: Number>(plane: &PlacedFeature<S>, point: &PlacedFeature<S>) -> Equation<S> {
+    let apart = point.origin.minus(&plane.origin).dot(&plane.axes[2]);
+    distance("contact", apart.minus(&point.radius))
+}
+
 fn direction<S>(name: &'static str, residual: S) -> Equation<S> {
     Equation { name, holds: Holds::Direction, residual }
 }

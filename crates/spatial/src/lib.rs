@@ -25,12 +25,15 @@ mod mobility;
 mod number;
 mod part_pose;
 mod placement;
+mod press;
+mod press_fault;
+mod pressed_contacts;
 #[cfg(test)]
 mod tests;
 mod vector;
 
 pub use assembly::{
-    Assembly, Direction, Feature, FeatureId, FeatureKind, FrameAxis, JointKind, Measure, MeasureKind, PartJoint,
+    Assembly, Direction, Feature, FeatureId, FeatureKind, FrameAxis, JointKind, Measure, MeasureKind, PartJoint, Press,
     Quantity, RigidPart,
 };
 pub use closed_assembly::{ClosedAssembly, NamedFormula, PoseUnknown};
@@ -38,3 +41,5 @@ pub use error::{SpatialError, Subject};
 pub use feature_place::FeaturePlace;
 pub use mobility::Mobility;
 pub use part_pose::PartPose;
+pub use press_fault::PressFault;
+pub use pressed_contacts::PressedContacts;

@@ -41,6 +41,7 @@ fn pair(kind: JointKind, kinds: [FeatureKind; 2]) -> Assembly {
             offset: Some([0.1, 0.2].map(Quantity::constant)),
             tilt: Some([0.03, -0.02].map(Quantity::constant)),
             side_by_side: false,
+            press: None,
         }],
         measures: Vec::new(),
         length_unit: None,

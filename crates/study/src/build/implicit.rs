@@ -61,6 +61,7 @@ pub(crate) fn implicit(
     let nominal = dimensions.iter().map(Dimension::nominal).collect();
     let conditions = Conditions::new(unknowns, conditions, nominal).map_err(|error| placed(file, error))?;
     let conditions = conditions.with_subjects(elements.subjects.iter().cloned());
+    let conditions = conditions.with_pressed(elements.pressed.clone());
     Ok(Some(Implicit { conditions, places }))
 }
 

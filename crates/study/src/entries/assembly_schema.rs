@@ -159,6 +159,13 @@ pub(crate) fn joints(_: &mut SchemaGenerator) -> Schema {
         let list = json!({ "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 });
         json!({ "description": what, "anyOf": [{ "type": "string" }, list] })
     };
+    let force = json!({
+        "description": "The direction of the force that presses the part against its contacts, in the assembly.",
+        "anyOf": [
+            { "type": "string", "enum": ["x", "y", "z", "-x", "-y", "-z"] },
+            { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 },
+        ],
+    });
     json_schema!({
         "type": "object",
         "additionalProperties": {
@@ -186,6 +193,9 @@ pub(crate) fn joints(_: &mut SchemaGenerator) -> Schema {
                 "float": { "description": "Where the pin lies in its hole: anywhere in it, on its wall, or along one direction.", "type": "string", "enum": ["disc", "rim", "uniform", "contact", "+", "-"] },
                 "toward": direction("The direction of a float in the frame of the hole's part; without `float` the pin lies on that side."),
                 "tilt_float": { "description": "True for a pin that tilts by the clearance over the length of its hole.", "type": "boolean" },
+                "press": force,
+                "weight_at": feature("The feature of the pressed part at which the force acts; without it the middle of the contacts."),
+                "targets": { "description": "The points of a part that can touch the plane, 3 to 12.", "type": "array", "items": { "type": "string" }, "minItems": 3, "maxItems": 12 },
                 "length": quantity("The length of a rod."),
                 "value": quantity("The angle: a number in degrees, a dimension in its unit, or a formula in radians."),
             },

@@ -23,7 +23,7 @@ use crate::tree::{Key, Tree, Value};
 pub(super) use assembly::NominalValues;
 use assembly::WrittenAssembly;
 use sensitol::assembly::formula::is_plain;
-use sensitol::assembly::implicit::EquationSubject;
+use sensitol::assembly::implicit::{EquationSubject, PressedJoint};
 
 /// A study with plain keys only.
 pub(super) struct Expanded {
@@ -51,6 +51,8 @@ pub(super) struct Elements {
     pub(super) closing: Vec<Closing>,
     /// Joints of rigid parts, by the names of their equations.
     pub(super) subjects: Vec<(String, EquationSubject)>,
+    /// Contacts of the joints that press a part.
+    pub(super) pressed: Vec<PressedJoint>,
 }
 
 /// A hole with a pin that may be larger than it.

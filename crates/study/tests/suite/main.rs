@@ -12,6 +12,7 @@ mod spatial_analyses;
 mod spatial_examples;
 mod spatial_faults;
 mod spatial_mobility;
+mod spatial_press;
 mod spatial_zones;
 mod studies;
 mod texts;

@@ -164,6 +164,162 @@ fn every_wrong_assembly_names_its_remedy() {
     assert!(error.to_string().contains("[parts]"), "{error}");
 }
 
+/// Wrongly pressed tables: each message names the joint, what is wrong, and what to write instead.
+#[test]
+fn every_wrong_press_names_its_remedy() {
+    let four = r#"targets = ["table.leg1", "table.leg2", "table.leg3", "table.leg4"]"#;
+    let stand = |rest: &str| format!("stand = {{ on = \"floor.top\", {rest} }}");
+    let tilt = r#"tilt = { of = "table.leg2", from = "floor.top", along = "z" }"#;
+    let height = r#"height = { of = "table.middle", from = "floor.top", unit = "mm" }"#;
+    for (joints, measure, key, what, remedy) in [
+        (
+            stand(&format!("{four}, press = [0, 0.1, -1]")),
+            height,
+            "joints.stand",
+            "leaves `table` sliding: its force has a part along `floor.top`",
+            "press along the normal of `floor.top`, or put the joints that stop the part before this one",
+        ),
+        (
+            stand("targets = [\"table.leg1\", \"table.leg2\"], press = \"-z\""),
+            height,
+            "joints.stand",
+            "names 2 contacts, and needs 3 to 12",
+            "against = \"part.point\"",
+        ),
+        (
+            stand("targets = [\"table.leg1\", \"table.middle\", \"table.leg3\"], press = \"-z\""),
+            height,
+            "joints.stand",
+            "has its contacts in a line: `leg1`, `middle` and `leg3`",
+            "add a contact beside the line",
+        ),
+        (
+            stand(&format!("{four}, weight_at = \"table.lamp\"")),
+            height,
+            "joints.stand",
+            "lets `table` tip over: its force lies outside the contacts",
+            "move `weight_at` between the contacts",
+        ),
+        (
+            stand(&format!("{four}, press = \"z\"")),
+            height,
+            "joints.stand",
+            "presses `table` away from its contacts",
+            "turn the direction of `press` around",
+        ),
+        (
+            stand(&format!("{four}, press = \"-z\"")),
+            tilt,
+            "joints.stand",
+            "lets `table` rock on `leg1` and `leg3`, and `tilt` depends on the side to which it does",
+            "move `weight_at` off the line of `leg1` and `leg3`",
+        ),
+        (
+            stand(&format!("{four}, press = \"-z\", takes = 3")),
+            height,
+            "joints.stand",
+            "`press` and `takes`",
+            "leave out `takes`",
+        ),
+        (
+            stand(&format!("{four}, press = \"-z\", against = \"table.bottom\"")),
+            height,
+            "joints.stand",
+            "`press` and `against`",
+            "write the contact points as `targets`",
+        ),
+        (stand("press = \"-z\""), height, "joints.stand", "`targets` is missing", "\"table.leg1\""),
+        (stand(four), height, "joints.stand", "`press` is missing", "press = [0, 0, -1]"),
+        (
+            stand(&format!("{four}, press = [0, 0, 0]")),
+            height,
+            "joints.stand.press",
+            "a direction of numbers in the assembly",
+            "",
+        ),
+        (
+            stand("targets = [\"table.leg1\", \"table.leg2\", \"table.bottom\"], press = \"-z\""),
+            height,
+            "joints.stand",
+            "has a plane `table.bottom` among its targets, and needs points",
+            "a feature with `point`",
+        ),
+        (
+            stand("targets = [\"table.leg1\", \"table.leg2\", \"floor.mark\"], press = \"-z\""),
+            height,
+            "joints.stand",
+            "has `floor.mark` among its targets",
+            "name contacts of one part",
+        ),
+        (
+            stand("targets = [\"table.leg1\", \"table.leg2\", \"table.leg1\"], press = \"-z\""),
+            height,
+            "joints.stand",
+            "names `table.leg1` twice",
+            "name each contact once",
+        ),
+        (
+            stand(&format!("{four}, weight_at = \"floor.mark\"")),
+            height,
+            "joints.stand",
+            "has its force at `floor.mark`, and that part is not moved by it",
+            "a feature of the part that rests on the contacts",
+        ),
+        (
+            format!(
+                "seat = {{ on = \"floor.top\", against = \"table.bottom\" }}\n{}",
+                stand(&format!("{four}, press = \"-z\""))
+            ),
+            height,
+            "joints.stand",
+            "the joints before it leave nothing to press",
+            "remove `press`, or let the joints before it take less",
+        ),
+        (
+            format!(
+                "{}\nseat = {{ on = \"floor.top\", against = \"table.bottom\" }}",
+                stand(&format!("{four}, press = \"-z\""))
+            ),
+            height,
+            "joints.seat",
+            "only 0 of these are free after `stand`",
+            "remove `seat`, or let a joint before it take less",
+        ),
+    ] {
+        let error = table(&joints, measure).expect_err(&joints);
+        assert_eq!(error.key, key, "{joints}: {error}");
+        let said = error.to_string();
+        assert!(said.contains(what), "{joints}: {said}");
+        assert!(said.contains(remedy), "{joints}: {said}");
+    }
+}
+
+/// A table on a floor.
+fn table(joints: &str, measure: &str) -> Result<Study, sensitol_study::StudyError> {
+    parse(&format!(
+        r#"
+[dimensions]
+h = {{ nominal = 70, tolerance = 0.1, unit = "mm" }}
+[parts.floor]
+top = {{ plane = [0, 0, 0], normal = "z" }}
+mark = {{ point = [0, 0, 0] }}
+[parts.table]
+at = [0, 0, 70]
+bottom = {{ plane = [0, 0, "-h"], normal = "-z" }}
+middle = {{ point = [0, 0, "-h"] }}
+leg1 = {{ point = [-30, -20, "-h"] }}
+leg2 = {{ point = [30, -20, "-h"] }}
+leg3 = {{ point = [30, 20, "-h"] }}
+leg4 = {{ point = [-30, 20, "-h"] }}
+lamp = {{ point = [35, 0, 0] }}
+[joints]
+{joints}
+[characteristics]
+{measure}
+"#
+    ))
+}
+
 /// Planes that must lie on each other and are parallel to none: the residual of a direction is an angle.
 #[test]
 fn an_open_direction_is_an_angle() {

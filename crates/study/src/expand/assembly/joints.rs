@@ -46,6 +46,9 @@ pub(super) fn joint(key: &Key, tree: &Tree, assembly: &Assembly, values: &mut Va
     if !matches!(tree.value, Value::Table(_)) {
         return Err(wrong_type(tree, path, "a joint such as { on = \"base.top\", against = \"block.bottom\" }"));
     }
+    if super::press::presses(tree) {
+        return super::press::joint(key, tree, assembly);
+    }
     let connection = connection(key, tree, &path, assembly)?;
     let own: &[&str] = match connection.kind {
         JointKind::Contact | JointKind::Round | JointKind::Crossed | JointKind::Slot => &["takes", "gap"],
@@ -91,6 +94,7 @@ pub(super) fn joint(key: &Key, tree: &Tree, assembly: &Assembly, values: &mut Va
         offset,
         tilt,
         side_by_side: connection.side_by_side,
+        press: None,
     })
 }
 

@@ -11,6 +11,7 @@
 mod joints;
 mod measures;
 mod parts;
+mod press;
 mod values;
 mod written;
 pub(super) mod zones;
@@ -23,7 +24,7 @@ use crate::expand::{Expanded, Origin, Tree, Value, wrong_type};
 use crate::scene::{ExtentQuantity, SpatialFacts, in_unit};
 use crate::tree::Key;
 use sensitol::assembly::formula::Formula;
-use sensitol::assembly::implicit::EquationSubject;
+use sensitol::assembly::implicit::{EquationSubject, PressedJoint};
 use sensitol_numeric::names::nearest;
 use sensitol_spatial::{
     Assembly, ClosedAssembly, FeatureId, JointKind, NamedFormula, PartJoint, PartPose, Quantity, SpatialError, Subject,
@@ -333,6 +334,11 @@ fn write(expanded: &mut Expanded, read: &Read, closed: ClosedAssembly, values: &
             }
         };
         formulas.push((key(&entry.span, &formula.name), line));
+    }
+    for contacts in &closed.pressed {
+        let joint = read.assembly.joints[contacts.joint].name.clone();
+        let (sets, changes) = (contacts.sets.clone(), contacts.changes.clone());
+        expanded.elements.pressed.push(PressedJoint { joint, sets, changes });
     }
     let mut equations = Vec::new();
     for (equation, joint) in closed.equations {

@@ -4,6 +4,7 @@ use super::entry::{ZoneKind, ZonedFeature};
 use super::frame::{ConstantFrame, constant, dot};
 use super::lines::{Extent, LineUnit, Lines, Owner, at, key, text};
 use crate::error::{Fault, Faults, StudyFault};
+use crate::expand::assembly::press::presses;
 use crate::expand::{Expanded, Tree, Value, quoted, wrong_type};
 use crate::tree::Key;
 use sensitol_numeric::names::nearest;
@@ -219,6 +220,14 @@ fn tilts<'t>(joint: &'t Tree, owner: &Owner, both: bool) -> Result<Option<&'t Tr
 /// Gap of two faces that touch, with their form; None if neither has a zone of form.
 fn form(joint: &Tree, features: &[ZonedFeature<'_>], lines: &mut Lines) -> Result<Option<String>, Fault> {
     let mut terms = Vec::new();
+    if let (Some(of), true) = (feature(joint, "on", features), presses(joint))
+        && let Some(zone) = of.zone(&[ZoneKind::Form])
+    {
+        let to = "a plane with contacts that press".to_owned();
+        let instead = "give each contact a deviation of its own: shift = [0, 0, \"f1\"]";
+        let found = StudyFault::DoesNotApply { key: zone.key, to, instead };
+        return Err(at(&of.owner, zone.key, &zone.span, found));
+    }
     for of in ["on", "against"].into_iter().filter_map(|key| feature(joint, key, features)) {
         let Some(zone) = of.zone(&[ZoneKind::Form]) else { continue };
         if of.kind == FeatureKind::Axis && zone.key == "straightness" {
