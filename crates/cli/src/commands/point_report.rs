@@ -39,6 +39,17 @@ struct PointReport {
     characteristics: Vec<CharacteristicValue>,
     /// Poses of the parts of an assembly in space, those that stand still included. Empty if the study has none.
     parts: Vec<PoseReport>,
+    /// Contacts of the joints that press a part. Empty if the study has none.
+    contacts: Vec<ContactReport>,
+}
+
+/// Contacts on which a pressed part rests.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct ContactReport {
+    /// Name of the joint.
+    joint: String,
+    /// Contacts that carry the force. None if the joints do not close at the point.
+    resting_on: Option<Vec<String>>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -135,6 +146,7 @@ impl EvaluationReport {
             unit: dimension.unit().map(str::to_owned),
             value,
         };
+        let contacts = contacts(problem, &points);
         let point = |(row, values): (usize, &Vec<f64>)| PointReport {
             dimensions: problem.dimensions().iter().zip(values).map(dimension).collect(),
             characteristics: (problem.characteristics().iter().enumerate())
@@ -148,6 +160,7 @@ impl EvaluationReport {
             parts: placed
                 .get(row)
                 .map_or_else(Vec::new, |found| PoseReport::all(found.as_ref().ok().map(Vec::as_slice), &study.poses)),
+            contacts: contacts[row].clone(),
         };
         Self {
             schema: sensitol_report::SCHEMA,
@@ -178,10 +191,36 @@ impl EvaluationReport {
                 section.note(format!("poses: rotation vector in rad, origin{unit}"));
                 section.table(table(&point.parts));
             }
+            if !point.contacts.is_empty() {
+                section.gap();
+            }
+            for one in &point.contacts {
+                let names = one.resting_on.as_ref().map_or_else(|| "unknown".to_owned(), |names| names.join(", "));
+                section.note(format!("joint {}: rests on {names}", one.joint));
+            }
             document.sections.push(section);
         }
         document
     }
+}
+
+/// Contacts of every joint that presses a part and that a characteristic depends on, for each point.
+fn contacts(problem: &Problem, points: &Points) -> Vec<Vec<ContactReport>> {
+    let function = problem.function();
+    let mut found: Vec<Vec<ContactReport>> = vec![Vec::new(); points.rows()];
+    for &output in problem.outputs() {
+        let Some(switches) = function.switches(output) else { continue };
+        let known = |joint: &str| found.first().is_some_and(|row| row.iter().any(|one| one.joint == joint));
+        let new: Vec<_> = switches.contacts.into_iter().filter(|of| !known(&of.joint)).collect();
+        let Some(margins) = function.margins(output, points).filter(|_| !new.is_empty()) else { continue };
+        for (row, found) in found.iter_mut().enumerate() {
+            found.extend(new.iter().map(|of| ContactReport {
+                joint: of.joint.clone(),
+                resting_on: of.resting(|switch| margins[switch][row]).map(|set| of.sets[set].clone()),
+            }));
+        }
+    }
+    found
 }
 
 /// Significant digits of values and poses in text.
