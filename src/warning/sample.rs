@@ -2,9 +2,10 @@
 
 use crate::method_kind::Method;
 use crate::warning::Advice;
-use crate::warning::text::{Text, say};
+use crate::warning::text::{Text, number, say};
 
 pub(super) fn heavy_point(characteristic: &str, limit: &f64, part: &f64) -> Text {
+    let limit = number(*limit);
     say(format!(
         "One point carries {:.0} % of the estimated probability of `{characteristic}` beyond {limit}. The surrogate does not show where rejects \
          lie. The probability may be above its interval.",
@@ -15,6 +16,7 @@ pub(super) fn heavy_point(characteristic: &str, limit: &f64, part: &f64) -> Text
 }
 
 pub(super) fn nothing_beyond(characteristic: &str, limit: &f64, points: &u64, most: &f64) -> Text {
+    let limit = number(*limit);
     say(format!(
         "None of {points} points of `{characteristic}` lies beyond {limit}. The probability has no estimate, only the upper bound {most:.1e}."
     ))
@@ -22,6 +24,7 @@ pub(super) fn nothing_beyond(characteristic: &str, limit: &f64, points: &u64, mo
 }
 
 pub(super) fn plain_sampling(characteristic: &str, limit: &f64, plain: &f64, evaluations: &u64) -> Text {
+    let limit = number(*limit);
     say(format!(
         "`{characteristic}` is often beyond {limit}: a plain sample of {plain:.0} points has the same standard error as these {evaluations} \
          evaluations. The result is right."
@@ -30,6 +33,7 @@ pub(super) fn plain_sampling(characteristic: &str, limit: &f64, plain: &f64, eva
 }
 
 pub(super) fn plain_fallback(characteristic: &str, limit: &f64, points: &u64) -> Text {
+    let limit = number(*limit);
     say(format!(
         "Importance sampling does not find where `{characteristic}` lies beyond {limit}: its interval is wider than that of plain sampling. The \
          estimate is that of {points} plain points."

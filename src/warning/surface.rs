@@ -1,7 +1,7 @@
 //! Warnings about the second-order surface.
 
 use crate::method_kind::Method;
-use crate::warning::text::{Text, likewise, names, part, places, say, significant};
+use crate::warning::text::{Text, likewise, names, number, part, places, say, significant};
 use crate::warning::{Advice, Change, ContactShare, Figure};
 
 pub(super) fn rss_invalid(characteristic: &str, mean_shift: &f64, variance: &f64) -> Text {
@@ -277,7 +277,7 @@ pub(super) fn surface_law_refuted(
     say(format!(
         "The surface law of `{characteristic}` {fails}: it has {law} ppm below {}, where {counted} ± {error} ppm of the points lie. Points take \
          its place for yield, quantiles and coverage intervals.",
-        short(*limit)
+        number(short(*limit))
     ))
     .advise(Advice::Sample { points: None })
 }

@@ -81,6 +81,12 @@ pub(super) fn significant(value: f64, digits: i32) -> String {
     }
 }
 
+/// Number with all its digits, and with an exponent if it is very large or very small.
+pub(super) fn number(value: f64) -> String {
+    let ordinary = value == 0.0 || (1e-6..1e9).contains(&value.abs());
+    if ordinary || !value.is_finite() { value.to_string() } else { format!("{value:e}") }
+}
+
 /// Share as percent, or as parts per million if it is below 0.1 %.
 pub(super) fn part(share: f64) -> String {
     if share < 1e-3 {
@@ -92,7 +98,13 @@ pub(super) fn part(share: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::names;
+    use super::{names, number};
+
+    #[test]
+    fn large_and_small_numbers_have_an_exponent() {
+        let written = [4.5, -0.002, 0.0, 6e200, -1.5e-200].map(number);
+        assert_eq!(written, ["4.5", "-0.002", "0", "6e200", "-1.5e-200"]);
+    }
 
     #[test]
     fn long_lists_are_counted() {
