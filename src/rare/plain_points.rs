@@ -26,6 +26,8 @@ use sensitol_numeric::sampling::{Estimate, clopper_pearson};
 const SURROGATE: usize = 1 << 20;
 /// Most coordinates of these points in all, for a time of some tenths of a second.
 const NUMBERS: usize = 1 << 27;
+/// Events that a count of 0 leaves possible, with 97.5 %. A surrogate that differs at as many points tells less than the count.
+const UNSEEN: f64 = 3.7;
 /// Points of the surrogate that are evaluated together.
 const ROWS: usize = 1 << 12;
 
@@ -72,8 +74,8 @@ impl PlainPoints {
         }
         let (n, hits) = (self.points as f64, self.hits as f64);
         let apart = (self.only[0] + self.only[1]) as f64;
-        let of_surrogate =
-            surrogate.filter(|share| self.unknown == 0 && apart + 1.0 < (hits + 1.0).max(n * share.value()));
+        let of_surrogate = surrogate
+            .filter(|share| self.unknown == 0 && apart + 1.0 < (hits + 1.0).max((n * share.value()).min(UNSEEN)));
         let (value, variance, interval) = match of_surrogate {
             Some(share) => self.beside(share),
             None => {
@@ -104,7 +106,7 @@ impl PlainPoints {
         let value = (own + more.0 - fewer.0).clamp(0.0, 1.0);
         let above = libm::hypot(libm::hypot(more.1[1] - more.0, fewer.0 - fewer.1[0]), most - own);
         let below = libm::hypot(libm::hypot(more.0 - more.1[0], fewer.1[1] - fewer.0), own - least);
-        let variance = own * (1.0 - own) / share.points + (more.0 + fewer.0) / n;
+        let variance = own * (1.0 - own) / share.points + (more.0 + fewer.0 - (more.0 - fewer.0).powi(2)) / n;
         (value, variance, [(value - below).max(0.0), (value + above).min(1.0)])
     }
 }
@@ -176,6 +178,22 @@ mod tests {
         // A surrogate that misses the rejects is not used.
         let apart = counted(&[(Some(true), false, 5), (Some(false), true, 8), (Some(false), false, 9987)]);
         assert_eq!(apart.found(Some(share)).unwrap().interval, clopper_pearson(5.0, 10_000.0));
+        // Nor is one that lies beyond the limit nearly everywhere, where the model hardly ever does.
+        let everywhere = SurrogateShare { points: 1e6, hits: 999_800.0 };
+        let apart = counted(&[(Some(true), true, 2), (Some(false), true, 9996), (Some(false), false, 2)]);
+        let found = apart.found(Some(everywhere)).unwrap();
+        assert_eq!((found.probability.unwrap().value, found.interval), (2e-4, clopper_pearson(2.0, 10_000.0)));
+    }
+
+    /// The standard error of a sum of a known share and the mean of differences is the root of their variances. Where all differences are
+    /// equal, only that of the share is left.
+    #[test]
+    fn equal_differences_have_no_variance() {
+        let share = SurrogateShare { points: 1e6, hits: 400.0 };
+        let plain = counted(&[(Some(true), false, 1000)]);
+        let (value, variance, _) = plain.beside(share);
+        assert_eq!(value, 1.0);
+        assert!((variance - 4e-4 * (1.0 - 4e-4) / 1e6).abs() < 1e-24, "{variance}");
     }
 
     /// Points without a value may all lie beyond.
