@@ -423,6 +423,12 @@ impl Watch {
         let known = estimate.standard_error.filter(|_| !self.lacks_a_side);
         Estimate { standard_error: known.map(|error| libm::hypot(error, self.of_sides)), ..estimate }
     }
+
+    /// Raises the standard error towards that of independent points as far as a few points decide the sum.
+    fn raised(self, estimate: Estimate, independent: Option<f64>) -> Estimate {
+        let least = self.share.independence() * independent.unwrap_or(0.0);
+        Estimate { standard_error: estimate.standard_error.map(|error| error.max(least)), ..estimate }
+    }
 }
 
 impl<'a> Evidence<'a> {
@@ -467,10 +473,10 @@ impl<'a> Evidence<'a> {
         let (random, controlled) = (of_moments(&self.all), controlled(differences, twin));
         let watched = self.watched.as_ref().map_or([Watch::default(); 4], |watched| watched.controlled);
         std::array::from_fn(|i| {
-            let controlled = controlled[i].map(|Controlled { estimate, random }| {
-                let value = estimate.value;
-                let random = watched[i].settled(Estimate { value, standard_error: random }).standard_error;
-                Controlled { estimate: watched[i].settled(estimate), random }
+            let controlled = controlled[i].map(|Controlled { estimate, random, unfitted }| {
+                let known = |estimate: Estimate| watched[i].settled(watched[i].raised(estimate, unfitted));
+                let random = known(Estimate { standard_error: random, ..estimate }).standard_error;
+                Controlled { estimate: known(estimate), random, unfitted }
             });
             better(controlled, plain[i], self.settled(random)[i])
         })
@@ -478,7 +484,10 @@ impl<'a> Evidence<'a> {
 
     /// Moments of the sample without the surrogate.
     fn plain(&self) -> [Option<Estimate>; 4] {
-        self.settled(moments(&self.all, &self.count.replicates))
+        let (random, estimates) = (of_moments(&self.all), moments(&self.all, &self.count.replicates));
+        let Some(Watched { plain, .. }) = &self.watched else { return estimates };
+        let independent = |i: usize| random[i].and_then(|of| of.standard_error);
+        self.settled(std::array::from_fn(|i| estimates[i].map(|estimate| plain[i].raised(estimate, independent(i)))))
     }
 
     /// Sets the standard errors that the sums of the sample support.
@@ -568,7 +577,7 @@ impl<'a> Evidence<'a> {
 /// The criterion is the scatter of all points as if they were random. Standard errors of 16 replicates are uncertain by a fifth: the
 /// smaller of two would be too small. An estimate with an unknown error is worse than any other.
 fn better(controlled: Option<Controlled>, plain: Option<Estimate>, random: Option<Estimate>) -> Option<Estimate> {
-    let Some(Controlled { estimate, random: own }) = controlled else { return plain };
+    let Some(Controlled { estimate, random: own, .. }) = controlled else { return plain };
     // If powers of the values overflow, only the controlled figure remains, because it is in units of its own sigma.
     let known = plain.filter(|of| of.value.is_finite() && of.standard_error.is_some());
     let without =

@@ -245,7 +245,12 @@ pub(super) struct Controlled {
     pub(super) estimate: Estimate,
     /// Standard error if all points were random ones.
     pub(super) random: Option<f64>,
+    /// Standard error of random points without fitted coefficients.
+    pub(super) unfitted: Option<f64>,
 }
+
+/// Rounding errors of mean, sigma, skewness and kurtosis, in units of double precision. The exact moments of the surrogate carry them.
+const ROUNDED: f64 = 8.0;
 
 /// Four moments from exact ones of the surrogate and sampled differences of all replicates. The standard errors come from the sample if it
 /// is random, else from the replicates. Returns None if no point has a value.
@@ -275,9 +280,15 @@ pub(super) fn moments(replicates: &[&Difference], twin: &Twin) -> [Option<Contro
                 standardised(&coefficients.moments(means, twin).0, twin)[moment].map(|(value, _)| value)
             })),
         };
-        let whole = |error: Option<f64>| error.filter(|_| known).map(|error| libm::hypot(fitted * error, own[moment]));
+        let plain = Coefficients::none().moments(all.sums.means(), twin).1;
+        let by =
+            std::array::from_fn(|column| gradient.iter().zip(&plain).map(|(by, of)| by * of[column]).sum::<f64>());
+        let unfitted = all.sums.standard_error(&by);
+        let size = value.abs() + if moment == 0 { twin.moments.sigma } else { 0.0 };
+        let own = libm::hypot(own[moment], ROUNDED * f64::EPSILON * size);
+        let whole = |error: Option<f64>| error.filter(|_| known).map(|error| libm::hypot(fitted * error, own));
         let estimate = Estimate { value, standard_error: whole(standard_error) };
-        Some(Controlled { estimate, random: whole(random) })
+        Some(Controlled { estimate, random: whole(random), unfitted: whole(unfitted) })
     })
 }
 
