@@ -279,7 +279,8 @@ impl SimulationSection for SimulatedCharacteristic {
                 ),
         );
         let rest = 1.0 - of.iter().map(|factor| factor.first_order.value).sum::<f64>();
-        section.note(format!("Sobol' indices, parts of the variance: interactions have {} %", percent(rest)));
+        // A negative estimate is 0 within its error.
+        section.note(format!("Sobol' indices, parts of the variance: interactions have {} %", percent(rest.max(0.0))));
     }
 
     fn histogram_table(&self) -> DataTable {

@@ -122,6 +122,8 @@ fn notes_say_what_a_stack_leaves_out() {
         }
         other => panic!("{other:?}"),
     }
+    // The moments of a kink come from points of the model, and so no share of the surface is that of the variance.
+    assert_eq!(notes(&with(two, "max(a, b + 1)"), Options::default())[0], StackNote::Sampled);
     assert_eq!(notes(&with(two, "a*b"), Method::SecondOrder.into()), [StackNote::InteractionsNotExamined { count: 1 }]);
     assert_eq!(notes(&with(two, "a - b"), Method::Rss.into()), [StackNote::NotExamined]);
     assert_eq!(notes(&with(two, "a - b"), full()), []);

@@ -11,7 +11,7 @@
 use crate::analysis::worst_case::KnownWorstCaseFigures;
 use std::fmt;
 
-use crate::analysis::statistics::part;
+use crate::analysis::statistics::{CharacteristicStatistics, part};
 use crate::analysis::worst_case::KnownWorstCase;
 use crate::document::number::{UNKNOWN, beside, limits, outward, percent, plain, short, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Tone, Value};
@@ -107,6 +107,8 @@ pub enum StackNote {
         /// Shift of the mean by curvature.
         mean_shift: f64,
     },
+    /// The moments come from points of the model, because no surface of second order follows the characteristic.
+    Sampled,
     /// The method assumes that the characteristic is linear.
     NotExamined,
     /// There is no curvature, but some interactions were not examined.
@@ -323,6 +325,9 @@ fn has_other_contributions(one: &CharacteristicAnalysis, rows: &[StackRow]) -> b
 
 /// Returns the note on linearity. Derivatives within their rounding errors count as 0.
 fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
+    if one.is_of_model() {
+        return Some(StackNote::Sampled);
+    }
     let real = |value: Option<f64>, rounding: Option<f64>| match (value, rounding) {
         (Some(value), Some(rounding)) => value.abs() > 2.0 * rounding,
         (value, _) => value.is_some_and(|value| value != 0.0),
@@ -359,6 +364,9 @@ impl fmt::Display for StackNote {
                  tangent at the means",
                 percent(*share),
                 significant(*mean_shift, 3)
+            ),
+            Self::Sampled => f.write_str(
+                "not linear: mean and sigma come from points of the model; this is the stack of its tangent at the means",
             ),
             Self::NotExamined => {
                 f.write_str("curvature was not examined: this is the stack of its tangent at the means (the method full examines all)")
@@ -413,7 +421,10 @@ impl Stack {
         let bent = |note: &StackNote| {
             matches!(
                 note,
-                StackNote::Curved { .. } | StackNote::NotExamined | StackNote::InteractionsNotExamined { .. }
+                StackNote::Curved { .. }
+                    | StackNote::Sampled
+                    | StackNote::NotExamined
+                    | StackNote::InteractionsNotExamined { .. }
             )
         };
         !self.rows.is_empty() && !self.notes.iter().any(bent)
