@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::command::sensitol;
+use super::command::{run, sensitol};
 
 fn printed(arguments: &[&str]) -> Value {
     let output = sensitol(arguments).output().unwrap();
@@ -90,4 +90,20 @@ fn interactions_that_hardly_matter_are_one_sum() {
     assert_eq!(remainder["count"], every - listed);
     // Sums of ten thousand numbers near 1e-5.
     assert!((share + remainder["share"].as_f64().unwrap() - total).abs() < 1e-9);
+}
+
+/// Interactions that vanish at every evaluated point leave the value of the surface. It is no statement about assemblies: `2 c^2 b` varies.
+#[test]
+fn one_value_of_a_surface_is_no_value_of_all_assemblies() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("study.toml");
+    for (formula, constant) in [("2*c^2*b", false), ("2*k", true)] {
+        let study = format!(
+            "[constants]\nk = 3\n[dimensions]\nb = {{ nominal = 0, sigma = 1 }}\nc = {{ nominal = 0, sigma = 1 }}\n[characteristics]\ny = {{ formula = \"{formula}\" }}\n"
+        );
+        std::fs::write(&path, study).unwrap();
+        let text = run(&["analyze", path.to_str().unwrap(), "-m", "full", "--verify", "0"]);
+        assert_eq!(text.contains("every assembly has the same value"), constant, "{text}");
+        assert_eq!(text.contains("all evaluated points have the same value"), !constant, "{text}");
+    }
 }
