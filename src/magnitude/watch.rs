@@ -34,12 +34,14 @@ struct Seen {
     points: usize,
     /// Greatest absolute value of each output.
     sizes: Vec<f64>,
+    /// Greatest absolute derivative of each output. It gives the size of an output whose values so far are 0.
+    slopes: Vec<f64>,
 }
 
 impl Watch {
     /// Watch for a function with this number of outputs, without any value yet.
     pub(super) fn new(outputs: usize) -> Self {
-        let seen = Mutex::new(Seen { points: 0, sizes: vec![0.0; outputs] });
+        let seen = Mutex::new(Seen { points: 0, sizes: vec![0.0; outputs], slopes: vec![0.0; outputs] });
         Self { settled: AtomicBool::new(false), extreme: AtomicBool::new(false), seen }
     }
 
@@ -58,7 +60,8 @@ impl Watch {
     /// Power of two of every output, by its greatest value so far.
     pub(crate) fn powers(&self) -> Vec<Power> {
         let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
-        seen.sizes.iter().map(|&size| Power::of(size)).collect()
+        let size = |(&size, &slope): (&f64, &f64)| Power::of(if size > 0.0 { size } else { slope });
+        seen.sizes.iter().zip(&seen.slopes).map(size).collect()
     }
 
     fn is_settled(&self) -> bool {
@@ -78,6 +81,16 @@ impl Watch {
         };
         if enough {
             self.settle();
+        }
+    }
+
+    /// Updates the sizes with the derivatives of these outputs, each per unit of an ordinary input.
+    fn look_at_slopes(&self, outputs: &[usize], found: &[Option<Derivatives>]) {
+        let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        for (&output, found) in outputs.iter().zip(found) {
+            let Some(Derivatives { first, second, mixed }) = found else { continue };
+            let values = first.iter().chain(second).chain(mixed).flatten();
+            seen.slopes[output] = values.fold(seen.slopes[output], |size, value| size.max(value.abs()));
         }
     }
 }
@@ -169,7 +182,11 @@ impl AssemblyFunction for WatchedFunction {
         directions: &Directions<'_>,
         exponents: &[i32],
     ) -> Vec<Option<Derivatives>> {
-        self.function.derivatives_per(outputs, directions, exponents)
+        let found = self.function.derivatives_per(outputs, directions, exponents);
+        if self.looks && !self.watch.is_settled() {
+            self.watch.look_at_slopes(outputs, &found);
+        }
+        found
     }
 
     fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {

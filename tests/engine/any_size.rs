@@ -499,6 +499,12 @@ fn every_command_has_the_figures_of_closed_forms_at_every_size() {
             let error = found.error_estimate.as_ref().unwrap().yield_.unwrap();
             assert!((1e6 * rejected - truth("ppm_above")).abs() <= 3e6 * error && error < 2e-3, "{rejected} {error}");
         }
+        // The single point of exact derivatives, at the means, has the value 0 and gives no size.
+        let exact = Options::from(Method::Full).with_derivatives(DerivativeSource::Exact);
+        let found = analyze(&problem, &exact).unwrap();
+        let rejected = found.characteristics[0].capability.unwrap().above.unwrap();
+        sensitol_testing::relative(1e6 * rejected, truth("ppm_above"), 1e-9);
+        assert!(found.warnings.iter().all(|warning| warning.code() == "pearson-differs"), "{:?}", found.warnings);
         let found = &simulate(&problem, &SimulationOptions::default()).unwrap().characteristics[0];
         let figures = [found.mean, found.sigma, found.skewness, found.kurtosis].map(Option::unwrap);
         for (estimate, truth) in
