@@ -71,7 +71,7 @@ for line in sys.stdin:
     print(json.dumps(answer), flush=True)
 "#;
 
-/// Studies of the kinds that need no other file: a text and the commands to try next.
+/// Returns the study of a kind that needs no other file, and the commands to try next.
 fn own_study(asked: &InitArgs) -> (&'static str, &'static [&'static str]) {
     match asked {
         InitArgs { stack: true, .. } => (STACK, &["analyze", "allocate"]),
@@ -83,8 +83,11 @@ fn own_study(asked: &InitArgs) -> (&'static str, &'static [&'static str]) {
     }
 }
 
-/// Returns the files of a kind with their texts, and the commands to try next.
-fn written(asked: &InitArgs, path: &Path) -> Result<(Vec<(PathBuf, String)>, &'static [&'static str]), Failure> {
+/// Files of a kind with their texts, and the commands to try next.
+type KindFiles = (Vec<(PathBuf, String)>, &'static [&'static str]);
+
+/// Returns the files that the options ask for.
+fn written(asked: &InitArgs, path: &Path) -> Result<KindFiles, Failure> {
     // A study that reads a file names it without its folder.
     let beside = |extension: &str| {
         let file = path.with_extension(extension);

@@ -84,7 +84,14 @@ impl Watched<'_> {
     /// True if a file has new content that is complete: an editor may be writing it at the first look.
     fn saved(&mut self) -> bool {
         let mut saved = false;
-        while self.files.iter_mut().fold(false, |any, file| file.changed() || any) {
+        loop {
+            let mut changed = false;
+            for file in &mut self.files {
+                changed |= file.changed();
+            }
+            if !changed {
+                break;
+            }
             saved = true;
             std::thread::sleep(LOOK);
         }

@@ -239,10 +239,13 @@ pub(crate) fn unrejected(rejected: f64) -> String {
     if rejected > 0.0 && rejected < FEWEST { "> 99.9999999 %".to_owned() } else { share(rejected) }
 }
 
-/// Formats a required yield in percent, with the digits that the study has.
+/// Formats a required yield in percent, with the digits that the study has. A computed one has more, and is rounded as any yield.
 pub(crate) fn target_yield(yield_: f64) -> String {
+    /// Most letters of a number that a person writes, such as 99.999999.
+    const WRITTEN: usize = 9;
     // Rounded, because the product by 100 adds digits.
-    format!("{} %", (1e11 * yield_).round() / 1e9)
+    let percent = format!("{}", (1e11 * yield_).round() / 1e9);
+    if percent.len() <= WRITTEN { format!("{percent} %") } else { share(1.0 - yield_) }
 }
 
 /// Formats limits in words.
@@ -316,4 +319,44 @@ pub(crate) fn band([lower, upper]: [f64; 2]) -> String {
     }
     let signed = |value: f64| if value >= 0.0 { format!("+{}", plain(value)) } else { plain(value) };
     format!("{} / {}", signed(lower), signed(upper))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn six_digits_unless_sigma_needs_more() {
+        assert_eq!(beside(941.73848, 0.87081), "941.738");
+        // Six digits would show two of sigma.
+        assert_eq!(beside(12556.513, 8.0435), "12556.51");
+        assert_eq!(beside(1000.0, 0.0005), "1000.000000");
+        // Five digits of sigma are enough, however small the value is.
+        assert_eq!(beside(0.000_123_456_789, 8.0435), "0.0001");
+        assert_eq!(carried(941.73848, 0.87081, Some(0.02)), "941.738");
+        assert_eq!(carried(941.73848, 0.87081, Some(0.2)), "941.74");
+        assert_eq!(estimated(0.043_646_769, Some(3e-8)), "0.0436468");
+        assert_eq!(carried_ends([-0.123_456, 941.73848], 0.87081, None), ["-0.123", "941.738"]);
+    }
+
+    #[test]
+    fn a_target_has_the_digits_of_the_study() {
+        assert_eq!([0.9973, 0.999, 0.99999].map(target_yield), ["99.73 %", "99.9 %", "99.999 %"]);
+        // One standard deviation fewer than three, computed: with three digits of the rejects.
+        assert_eq!(target_yield(0.954_499_736), "95.45 %");
+    }
+
+    proptest::proptest! {
+        /// No value lies beyond the printed ends, except for a millionth of their last digit.
+        #[test]
+        fn outward_ends_enclose(low in -1e6..1e6_f64, width in 1e-6..1e4_f64, sigma in 1e-4..1e3_f64) {
+            let high = low + width;
+            let texts = outward([low, high], sigma, None);
+            let decimals = texts[0].split_once('.').map_or(0, |(_, digits)| digits.len());
+            // A millionth of the last digit, and rounding of a double at either step.
+            let slack = 2e-6 * 10f64.powi(-(decimals as i32)) + 4.0 * f64::EPSILON * low.abs().max(high.abs());
+            let [from, to] = texts.clone().map(|text| text.parse::<f64>().unwrap());
+            proptest::prop_assert!(from <= low + slack && to >= high - slack, "{texts:?} of {low} .. {high}");
+        }
+    }
 }
