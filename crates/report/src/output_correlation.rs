@@ -44,13 +44,14 @@ fn coefficient(value: f64, error: Option<f64>) -> String {
     unsigned_zero(format!("{value:.decimals$}"))
 }
 
-/// Sentence with the joint yield, its error, and the target.
+/// Sentence with the joint yield, its error if that is not empty, and the target.
 pub(super) fn all_limits(yield_: &str, error: &str, requirement: Option<&Judged>) -> String {
     let target = requirement.map_or_else(String::new, |judged| {
         let Requirement::Yield(target) = judged.requirement else { return String::new() };
         format!("; target {}: {}", target_yield(target), judged.verdict.name())
     });
-    format!("all limits at once: yield {yield_}, {error}{target}")
+    let error = if error.is_empty() { String::new() } else { format!(", {error}") };
+    format!("all limits at once: yield {yield_}{error}{target}")
 }
 
 /// Sentence with a joint yield that has a 95 % interval.

@@ -106,6 +106,8 @@ fn no_command_obeys_a_name() {
     let file = format!("{}.toml", HOSTILE.replace('/', ""));
     std::fs::write(at(&file), &good).unwrap();
     let option = format!("--{HOSTILE}");
+    // No command writes a file of this name. A study that is there would be watched until an interruption.
+    let nowhere = format!("nowhere{HOSTILE}");
     let journal = "model.journal.sqlite";
     let commands: &[&[&str]] = &[
         &["analyze", "good.toml", "-v"],
@@ -141,7 +143,7 @@ fn no_command_obeys_a_name() {
         &["probe", "model.toml"],
         &["workbench", "bad.toml", "--page", HOSTILE],
         &["serve", HOSTILE],
-        &["watch", HOSTILE],
+        &["watch", &nowhere],
         &["import", HOSTILE],
         &["evaluate", "bad.toml"],
         &["journal", "show", journal],

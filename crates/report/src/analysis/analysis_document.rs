@@ -6,7 +6,7 @@ use crate::analysis::range_bars as bars;
 use crate::analysis::stack::Stack;
 use crate::analysis::statistics::CharacteristicStatistics;
 use crate::analysis::statistics::{derivative, matters, part, size, total};
-use crate::analysis::yield_source::{decision, pearson_fit, source};
+use crate::analysis::yield_source::{ROUNDING, decision, pearson_fit, source};
 use crate::document::number::{
     UNKNOWN, beside, carried, carried_ends, index, index_with, known, limits, percent, plain, plural, short,
     significant, within, yielded,
@@ -78,6 +78,8 @@ impl Report {
             let requirement = self.analysis.joint_requirement.as_ref();
             let reach = match interval.map(|ends| ends.map(yielded)) {
                 Some([low, high]) => format!("95 % interval {low} to {high}"),
+                // Rounding says nothing about a proven yield.
+                None if joint.error < ROUNDING => String::new(),
                 None => format!("± {} %", significant(100.0 * joint.error, 2)),
             };
             document.note(all_limits(&text, &reach, requirement));

@@ -13,7 +13,7 @@ const DIFFERENT: f64 = 0.01;
 const SLOW: f64 = 0.1;
 
 /// Greatest error of the yield that counts as rounding.
-const ROUNDING: f64 = 1e-12;
+pub(crate) const ROUNDING: f64 = 1e-12;
 
 /// Sentence on the source of the yield and its error. A proof is exact in every printed digit, so its rounding is left out.
 pub(crate) fn source(one: &CharacteristicAnalysis) -> Option<String> {
