@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{NUMBERED, PicturedCharacteristic, heat};
-use crate::assembly::OwnerShare;
+use crate::assembly::{OwnerShare, ShareOwner};
 use crate::document::number::{UNKNOWN, percent, plural};
 use crate::document::svg::escaped;
 use sensitol_study::AssemblyScene;
@@ -29,7 +29,8 @@ pub(super) fn drivers(scene: &AssemblyScene, pictured: &[PicturedCharacteristic]
         );
         let shown: Vec<&OwnerShare> = one.shares.iter().filter(|share| share.value.abs() >= SMALL).take(ROWS).collect();
         for (place, share) in shown.iter().enumerate() {
-            let number = match heat(share.value) > 0 {
+            // A dimension of formulas alone has no place in the picture.
+            let number = match heat(share.value) > 0 && share.owner != ShareOwner::Formula {
                 true => format!("<span class=\"no\">{}</span>", place + 1),
                 false => String::new(),
             };
