@@ -281,8 +281,7 @@ pub(super) fn moments(replicates: &[&Difference], twin: &Twin) -> [Option<Contro
             })),
         };
         let plain = Coefficients::none().moments(all.sums.means(), twin).1;
-        let by =
-            std::array::from_fn(|column| gradient.iter().zip(&plain).map(|(by, of)| by * of[column]).sum::<f64>());
+        let by = std::array::from_fn(|column| gradient.iter().zip(&plain).map(|(by, of)| by * of[column]).sum::<f64>());
         let unfitted = all.sums.standard_error(&by);
         let size = value.abs() + if moment == 0 { twin.moments.sigma } else { 0.0 };
         let own = libm::hypot(own[moment], ROUNDED * f64::EPSILON * size);

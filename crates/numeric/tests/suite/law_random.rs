@@ -352,7 +352,10 @@ fn quantiles_beside_a_gap_lie_in_their_cluster() {
                 let exact = cluster - width * z.powi(4);
                 // The width of a cluster is 9 w; points resolve it to a fraction.
                 assert!((found.value - exact).abs() <= 9.0 * width, "{width} {p}: {found:?}, exact {exact}, {range:?}");
-                assert!((found.value - exact).abs() <= 3.0 * found.error + 1e-9, "{width} {p}: {found:?}, exact {exact}");
+                assert!(
+                    (found.value - exact).abs() <= 3.0 * found.error + 1e-9,
+                    "{width} {p}: {found:?}, exact {exact}"
+                );
                 assert!(found.error <= 0.02, "{width} {p}: {found:?}");
                 assert!(found.value >= before - 9.0 * width, "{width} {p}: {found:?} after {before}");
                 before = found.value;

@@ -291,7 +291,9 @@ impl CharacteristicSections for CharacteristicAnalysis {
                 section.note(format!("every assembly has the same value: {}", plain(*at)));
             }
             // Nothing proves that the characteristic has this value everywhere.
-            Some(Law::Point { at }) => section.note(format!("all evaluated points have the same value: {}", plain(*at))),
+            Some(Law::Point { at }) => {
+                section.note(format!("all evaluated points have the same value: {}", plain(*at)))
+            }
             Some(Law::Pearson(law)) => {
                 let (kind, sigma) = (law.kind().name(), self.sigma().unwrap_or(0.0));
                 let mut detail =

@@ -6,8 +6,6 @@ use crate::document::number::percent;
 use crate::document::{Blocks, Cell, Columns, DataTable, Element, Section};
 use sensitol::analysis::CharacteristicAnalysis;
 
-/// Rows that a terminal shows unless everything is asked for.
-const ROWS: usize = 6;
 /// Share of the variance below which a row is left out.
 const SMALL: f64 = 5e-5;
 
@@ -40,17 +38,8 @@ impl Report {
                 share: *share,
             }));
         }
-        let together: f64 = shown.iter().skip(ROWS).map(|share| share.value).sum();
-        let rest = format!(
-            "and {} more with {} % together; -v shows all",
-            shown.len().saturating_sub(ROWS),
-            percent(together)
-        );
-        let few = table(shown.iter().map(|share| row(share)).collect()).at_most([ROWS, 0], rest);
-        section.gap();
-        section.brief(vec![Element::Table(few)]);
-        // Pages have the picture with its tables.
-        section.detail(vec![Element::Table(table(all).at_most([usize::MAX, 0], String::new()))]);
+        // The short table of contributions groups the dimensions of an element already. Pages have the picture with its tables.
+        section.detail(vec![Element::Gap, Element::Table(table(all).at_most([usize::MAX, 0], String::new()))]);
     }
 }
 
