@@ -229,15 +229,15 @@ pub(super) fn contact_switch(
     let mut met: Vec<&ContactShare> = contacts.iter().filter(|of| of.share > 0.0).collect();
     met.sort_by(|a, b| b.share.total_cmp(&a.share));
     let share = |of: &&ContactShare| {
-        let (names, percent) = (of.contacts.join(", "), 100.0 * of.share);
-        format!("on {names} in {percent:.1} % ± {:.1}", 100.0 * of.error)
+        let (names, percent, error) = (of.contacts.join(", "), 100.0 * of.share, 100.0 * of.error);
+        format!("In {percent:.1} % ± {error:.1} of the assemblies the part stands on {names}.")
     };
     let mut sets: Vec<String> = met.iter().take(SETS).map(share).collect();
     if met.len() > SETS {
         let rest: f64 = met[SETS..].iter().map(|of| of.share).sum();
-        sets.push(format!("on one of {} other sets in {:.1} %", met.len() - SETS, 100.0 * rest));
+        sets.push(format!("In {:.1} % it stands on one of {} other sets.", 100.0 * rest, met.len() - SETS));
     }
-    let shown = format!("`{characteristic}` {does} where {switch} change. The part rests {}.", sets.join("; "));
+    let shown = format!("`{characteristic}` {does} where {switch} change. {}", sets.join(" "));
     if *sampled {
         return say(shown);
     }

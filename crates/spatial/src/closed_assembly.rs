@@ -13,7 +13,7 @@ use crate::number::Number;
 use crate::part_pose::PartPose;
 use crate::placement::{LocalFeature, PlacedFeature, Pose, Rotation, half_angle, product, rodrigues, rotation_vector};
 use crate::press::check_features;
-use crate::pressed_contacts::PressedContacts;
+use crate::pressed_contacts::{PressedContacts, PressedFeatures};
 use crate::vector::Vector;
 
 /// An unknown of a pose.
@@ -259,9 +259,9 @@ impl Assembly {
 }
 
 /// Writes the equations of an assembly whose nominal state is known.
-pub(crate) struct Writer<'a> {
-    pub(crate) assembly: &'a Assembly,
-    pub(crate) closure: &'a Closure<'a>,
+struct Writer<'a> {
+    assembly: &'a Assembly,
+    closure: &'a Closure<'a>,
     unknowns: Vec<PoseUnknown>,
     formulas: Vec<(NamedFormula, usize)>,
     poses: Vec<Pose<Expression>>,
@@ -344,7 +344,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Gives a long formula a name, so that it is evaluated once.
-    pub(crate) fn named(&mut self, name: String, (part, is_length): (usize, bool), formula: &Expression) -> Expression {
+    fn named(&mut self, name: String, (part, is_length): (usize, bool), formula: &Expression) -> Expression {
         if formula.is_short() {
             return formula.clone();
         }
@@ -354,7 +354,7 @@ impl<'a> Writer<'a> {
     }
 
     /// A feature at its place, with names for its coordinates.
-    pub(crate) fn feature(&mut self, id: FeatureId) -> PlacedFeature<Expression> {
+    fn feature(&mut self, id: FeatureId) -> PlacedFeature<Expression> {
         if let Some(known) = self.features.get(&id) {
             return known.clone();
         }
@@ -381,8 +381,14 @@ impl<'a> Writer<'a> {
         let (mut lines, mut pressed) = (Vec::new(), Vec::new());
         for (index, joint) in self.assembly.joints.iter().enumerate() {
             if let Some(press) = &joint.press {
-                let (equations, contacts) = self.pressed(index, press);
-                lines.extend(equations.into_iter().map(|line| (line, Some(index))));
+                let targets = press.targets.iter().map(|&target| self.feature(target)).collect();
+                let features = PressedFeatures { plane: self.feature(joint.between[0]), targets };
+                let part = (press.targets[0].part, true);
+                let closure = self.closure;
+                let named = |name: String, formula: &Expression| self.named(name, part, formula);
+                let (equations, contacts) = closure.pressed(index, press, &features, named);
+                let line = |(name, formula)| (NamedFormula { name, formula, is_length: true }, Some(index));
+                lines.extend(equations.into_iter().map(line));
                 pressed.push(contacts);
                 continue;
             }

@@ -22,6 +22,8 @@ const MOST_CONTACTS: usize = 12;
 const NUDGE: f64 = 1e-8;
 /// Part of the force that counts as none at a contact: the part could rock about the line of the others.
 const NOTHING: f64 = 1e-6;
+/// Part of the force along the plane that is left to friction: that of a plane which is off by a degree at the nominal sizes.
+const FRICTION: f64 = 0.02;
 /// Part of the force that rounding leaves along motions that no contact stops.
 const ROUNDING: f64 = 1e-9;
 /// Advantage of a set, in sizes of the assembly, that counts for the choice at the nominal sizes.
@@ -204,7 +206,7 @@ impl Closure<'_> {
             if rows.motions() == 0 {
                 return wrong(PressFault::NothingLeft { part: part() });
             }
-            if rows.sliding > NOTHING {
+            if rows.sliding > FRICTION {
                 let plane = self.assembly.feature_name(joint.between[0]);
                 return wrong(PressFault::Slides { part: part(), plane });
             }

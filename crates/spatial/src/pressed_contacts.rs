@@ -1,10 +1,11 @@
 //! Formulas of a joint that presses: openings of its contacts, the choice among the sets that can carry the force, and its equations.
 
 use crate::assembly::Press;
-use crate::closed_assembly::{NamedFormula, Writer};
+use crate::closure::Closure;
 use crate::expression::Expression;
 use crate::joint::opening;
 use crate::number::Number;
+use crate::placement::PlacedFeature;
 
 /// Coefficient, as part of the greatest one, that rounding leaves in place of 0.
 const ROUNDING: f64 = 1e-14;
@@ -20,23 +21,33 @@ pub struct PressedContacts {
     pub changes: Vec<String>,
 }
 
-impl Writer<'_> {
-    /// Equations of a joint that presses, with its contacts.
+/// Features of a joint that presses, at their places.
+pub(crate) struct PressedFeatures {
+    pub(crate) plane: PlacedFeature<Expression>,
+    pub(crate) targets: Vec<PlacedFeature<Expression>>,
+}
+
+impl Closure<'_> {
+    /// Names and formulas of the equations of a joint that presses, with its contacts. `named` gives a long formula a name.
     ///
     /// Every set `T` of contacts has the motions `G^-1 gap_T`, with the openings `G` of its contacts by these motions: zero if all of its
     /// contacts touch. By the motions themselves the derivatives of all sets are the same, so that a change of the set is a bend and no jump
     /// of the equations. The set whose push is greatest gives the equations.
-    pub(crate) fn pressed(&mut self, joint: usize, press: &Press) -> (Vec<NamedFormula>, PressedContacts) {
+    pub(crate) fn pressed(
+        &self,
+        joint: usize,
+        press: &Press,
+        features: &PressedFeatures,
+        mut named: impl FnMut(String, &Expression) -> Expression,
+    ) -> (Vec<(String, String)>, PressedContacts) {
         let given = &self.assembly.joints[joint];
-        let part = (press.targets[0].part, true);
         let names = self.assembly.contact_names(press);
-        let plane = self.feature(given.between[0]);
         let mut gaps = Vec::new();
-        for (&target, name) in press.targets.iter().zip(&names) {
-            let gap = opening(&plane, &self.feature(target)).residual;
-            gaps.push(self.named(format!("{}: gap of {name}", given.name), part, &gap));
+        for (target, name) in features.targets.iter().zip(&names) {
+            let gap = opening(&features.plane, target).residual;
+            gaps.push(named(format!("{}: gap of {name}", given.name), &gap));
         }
-        let sets = self.closure.press_rows(joint, press, &self.closure.rows_before(joint)).sets();
+        let sets = self.press_rows(joint, press, &self.rows_before(joint)).sets();
         let motions = sets[0].contacts.len();
         let (mut best, mut chosen): (Option<Expression>, Vec<Expression>) = (None, Vec::new());
         let mut changes = Vec::new();
@@ -46,26 +57,22 @@ impl Writer<'_> {
             let push = combined(&of_set, &forces);
             let own: Vec<Expression> = set.inverse.iter().map(|row| combined(&of_set, row)).collect();
             let Some(before) = best else {
-                best = (sets.len() > 1).then(|| self.named(format!("{}: push 1", given.name), part, &push));
+                best = (sets.len() > 1).then(|| named(format!("{}: push 1", given.name), &push));
                 chosen = own;
                 continue;
             };
             let last = index + 1 == sets.len();
-            let push = self.named(format!("{}: push {}", given.name, index + 1), part, &push);
+            let push = named(format!("{}: push {}", given.name, index + 1), &push);
             changes.push(format!("{} > {}", push.text(), before.text()));
             for (motion, (chosen, own)) in chosen.iter_mut().zip(&own).enumerate() {
                 let choice = Expression::choice([&push, &before], own, chosen);
                 let name = format!("{}: contact {} of {} sets", given.name, motion + 1, index + 1);
-                *chosen = if last { choice } else { self.named(name, part, &choice) };
+                *chosen = if last { choice } else { named(name, &choice) };
             }
             let name = format!("{}: best of {}", given.name, index + 1);
-            best = Some(self.named(name, part, &Expression::choice([&push, &before], &push, &before)));
+            best = Some(named(name, &Expression::choice([&push, &before], &push, &before)));
         }
-        let equation = |motion: usize| NamedFormula {
-            name: format!("{}: contact {}", given.name, motion + 1),
-            formula: chosen[motion].text(),
-            is_length: true,
-        };
+        let equation = |motion: usize| (format!("{}: contact {}", given.name, motion + 1), chosen[motion].text());
         let sets = sets.iter().map(|set| set.carrying().map(|contact| names[contact].clone()).collect()).collect();
         ((0..motions).map(equation).collect(), PressedContacts { joint, sets, changes })
     }

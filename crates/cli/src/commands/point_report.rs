@@ -196,7 +196,7 @@ impl EvaluationReport {
             }
             for one in &point.contacts {
                 let names = one.resting_on.as_ref().map_or_else(|| "unknown".to_owned(), |names| names.join(", "));
-                section.note(format!("joint {}: rests on {names}", one.joint));
+                section.note(format!("joint {}: stands on {names}", one.joint));
             }
             document.sections.push(section);
         }
