@@ -18,7 +18,7 @@ pub(super) struct StudyArgs {
     pub(super) how: HowArgs,
 }
 
-/// How a study is to be analysed.
+/// Method and accuracy of an analysis.
 #[derive(Debug, Args)]
 pub(super) struct HowArgs {
     /// The method [default: that of the study, or auto]; auto evaluates where the error of sigma falls most, until `--accuracy` is met
@@ -78,7 +78,7 @@ pub(super) struct HowArgs {
     pub(super) derivatives: Option<DerivativesArg>,
 }
 
-/// How long to work, and where what it costs is kept.
+/// Time limit and journal of a run.
 #[derive(Debug, Args)]
 pub(super) struct WorkArgs {
     /// Stop after S seconds and report the results so far
