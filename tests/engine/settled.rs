@@ -90,8 +90,7 @@ fn standard_errors_that_are_told_reach_the_truth() {
 }
 
 /// Samples of which a few points decide. Strata and fitted controls suit just these points, so that errors without a lower bound were up
-/// to seventeen times too small. Five standard errors are exceeded by a figure of a Student t with 15 degrees of freedom, that of 16
-/// replicates, with the probability 2e-4, and by that of a heavy tail more often.
+/// to seventeen times too small: 1.3 % of the figures of a control and 1.8 % of those of Sobol' points were off by more than four of them.
 #[test]
 fn strata_and_controls_are_not_trusted_where_few_points_decide() {
     let random = SimulationOptions::default();
@@ -110,8 +109,9 @@ fn strata_and_controls_are_not_trusted_where_few_points_decide() {
         };
         let all: Vec<f64> = runs.par_iter().flat_map_iter(off).collect();
         let beyond = |errors: f64| all.iter().filter(|&&off| off > errors).count();
-        assert!(beyond(6.0) == 0, "{what}: {:?}", all.iter().copied().fold(0.0, f64::max));
-        assert!(500 * beyond(5.0) <= all.len(), "{what}: {} of {}", beyond(5.0), all.len());
+        // A computation in Python has at most 5.9 errors in 731 figures of fitted controls with the bound, and 17.3 without.
+        assert!(beyond(8.0) == 0, "{what}: {:?}", all.iter().copied().fold(0.0, f64::max));
+        assert!(100 * beyond(4.0) <= all.len(), "{what}: {} of {}", beyond(4.0), all.len());
     }
 }
 
