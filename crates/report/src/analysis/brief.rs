@@ -43,7 +43,8 @@ impl Report {
         let rest = all.len() - shown.len();
         if rest > 0 {
             let more = if shown.is_empty() { "" } else { " more" };
-            text += &unbroken(&format!("{rest}{more} characteristics: --brief has a line for each").into(), style);
+            text +=
+                &unbroken(&format!("{rest}{more} characteristics; the brief report has a line for each").into(), style);
         }
         if let Some(line) = self.joint_line() {
             text += &unbroken(&line, style);
