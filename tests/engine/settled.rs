@@ -111,7 +111,7 @@ fn strata_and_controls_are_not_trusted_where_few_points_decide() {
         let beyond = |errors: f64| all.iter().filter(|&&off| off > errors).count();
         // A computation in Python has at most 5.9 errors in 731 figures of fitted controls with the bound, and 17.3 without.
         assert!(beyond(8.0) == 0, "{what}: {:?}", all.iter().copied().fold(0.0, f64::max));
-        assert!(100 * beyond(4.0) <= all.len(), "{what}: {} of {}", beyond(4.0), all.len());
+        assert!(200 * beyond(4.0) <= 3 * all.len(), "{what}: {} of {}", beyond(4.0), all.len());
     }
 }
 

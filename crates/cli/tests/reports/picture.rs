@@ -114,14 +114,13 @@ fn the_terminal_lists_features_with_their_contributions() {
     let analysis = analyze(&study.problem, &study.options).unwrap();
     let about = About { scene: study.scene(), ..About::default() };
     let report = Report::of(&study.problem, &analysis, about);
-    let shown =
-        text(&report.brief_document(), Style { detail: Detail::Short, unicode: true, color: false, width: 100 });
-    let line =
-        |name: &str| shown.lines().find(|line| line.trim_start().starts_with(name)).unwrap_or_default().to_owned();
+    let shown = text(&report.document(), Style { detail: Detail::Full, unicode: true, color: false, width: 100 });
+    // The table of features follows that of dimensions.
+    let mut features = shown.lines().skip_while(|line| !line.contains("by feature"));
+    let drill = features.find(|line| line.trim_start().starts_with("plate.drill")).unwrap_or_default();
     // Of x, with the slopes of the closed form: px and hx have 1, hy, py, qy and sy the arm of 40 mm over 100 mm.
     let [a, b, c] = [0.015f64, 0.02, 0.05].map(|tolerance| (tolerance / 3.0).powi(2));
     let whole = a + 2.0 * 0.16 * a + b + 2.0 * 0.16 * b + c;
-    let drill = line("plate.drill");
     let found: f64 = drill.split_whitespace().last().unwrap().parse().unwrap();
     close(found, 100.0 * c / whole, 0.05, 100.0);
 }
