@@ -28,7 +28,7 @@ const UNSETTLED: f64 = 0.8;
 const COMMON: f64 = 0.2;
 
 /// Shares between which the standard error of independent points becomes a lower bound.
-const SPREAD: [f64; 2] = [0.3, 0.6];
+const SPREAD: [f64; 2] = [0.25, 0.5];
 
 /// Ends of a sample: its ten least and its ten greatest values.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -154,8 +154,8 @@ impl LargestShare {
         Self { largest: largest.min(1.0), watched: watched.min(1.0) }
     }
 
-    /// Weight of the standard error of independent points as a lower bound of that of a better design or of a fitted control: 0 up to 0.3,
-    /// 1 from 0.6 on. Where a few points decide, strata and regressions fit just these points. Their errors then are too small, and the
+    /// Weight of the standard error of independent points as a lower bound of that of a better design or of a fitted control: 0 up to 0.25,
+    /// 1 from 0.5 on. Where a few points decide, strata and regressions fit just these points. Their errors then are too small, and the
     /// points that the sample lacks are in none.
     pub fn independence(self) -> f64 {
         ((self.watched - SPREAD[0]) / (SPREAD[1] - SPREAD[0])).clamp(0.0, 1.0)
@@ -220,7 +220,7 @@ mod tests {
         assert!((widening(0.6).unwrap() - 2.0).abs() < 1e-12);
         assert_eq!((widening(0.8), widening(f64::NAN)), (None, None));
         let independence = |watched: f64| LargestShare { largest: 0.0, watched }.independence();
-        assert_eq!((independence(0.3), independence(0.6), independence(1.0)), (0.0, 1.0, 1.0));
-        assert!((independence(0.45) - 0.5).abs() < 1e-12);
+        assert_eq!((independence(0.25), independence(0.5), independence(1.0)), (0.0, 1.0, 1.0));
+        assert!((independence(0.375) - 0.5).abs() < 1e-12);
     }
 }
