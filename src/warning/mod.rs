@@ -48,9 +48,9 @@ warnings! {
         characteristic: String,
         /// The dimension.
         dimension: String,
-        /// Its share of the variance.
+        /// Share of the variance that it has.
         share: f64,
-        /// Its tolerance as a multiple of the widest other one in the same unit.
+        /// Ratio of its tolerance to the widest other one in the same unit.
         factor: f64,
     };
     /// The units in a formula do not go together.
