@@ -17,6 +17,36 @@ const SAME: f64 = 1e-14;
 
 /// Limit at which a tail of the law has the probability `p`, above 0 and at most one half.
 pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
+    bracketed(law, tail, p, alone(law, tail, p))
+}
+
+/// Quantile whose error is confirmed by the tails on both sides of it. Values with probabilities of their own leave gaps, in which a search
+/// may end beside the cluster that has the quantile. It is then bisected, since a tail falls outward everywhere.
+fn bracketed(law: &SurfaceLaw, tail: LawTail, p: f64, found: LawFigure) -> LawFigure {
+    if law.given.inputs.iter().all(|input| input.atoms.is_empty()) || !found.error.is_finite() {
+        return found;
+    }
+    let (sign, reach) = (tail.sign(), BRACKET * found.error);
+    let [inward, outward] = [-reach, reach].map(|off| law.tail(found.value + sign * off, tail));
+    if inward.value + inward.error >= p && outward.value - outward.error <= p {
+        return found;
+    }
+    let [least, most] = law.range();
+    let (mut heavy, mut light) = if tail == LawTail::Upper { (least, most) } else { (most, least) };
+    let scale = SAME * (law.sigma() + law.mean().abs());
+    for _ in 0..STEPS {
+        let middle = 0.5 * (heavy + light);
+        if (light - heavy).abs() <= scale || middle == heavy || middle == light {
+            break;
+        }
+        *(if law.tail(middle, tail).value > p { &mut heavy } else { &mut light }) = middle;
+    }
+    let y = 0.5 * (heavy + light);
+    LawFigure::new(y, extent(law, y, tail, p).max(scale))
+}
+
+/// Search of one quantile by its own tails.
+fn alone(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
     let (mean, sigma) = (law.mean(), law.sigma());
     let sign = tail.sign();
     // Logarithm of the tail over `p` at a distance outward from the mean. It is positive while the tail is too heavy.
@@ -124,6 +154,8 @@ const OPEN: f64 = 0.02;
 const APART: f64 = 0.05;
 /// Error, in sigmas, above which the error of a probability over the density is no error of a quantile.
 const COARSE: f64 = 0.1;
+/// Errors of a quantile within which its probability lies, by the tails there.
+const BRACKET: f64 = 3.0;
 /// Greatest distance of [`extent`], in sigmas: farther out no quantile of interest lies.
 const FARTHEST: f64 = 1e3;
 /// Factor between two distances at which [`extent`] computes the tail.
@@ -142,7 +174,10 @@ const TILTED: f64 = 5e-3;
 /// three or four values of the law.
 pub(super) fn quantiles(law: &SurfaceLaw, sought: &[Sought]) -> Vec<LawFigure> {
     let sides = [LawTail::Lower, LawTail::Upper].map(|tail| Together::of(law, tail, sought));
-    let one = |of: &Sought| near(law, &sides[usize::from(of.tail == LawTail::Upper)], of);
+    let one = |of: &Sought| {
+        let found = near(law, &sides[usize::from(of.tail == LawTail::Upper)], of);
+        bracketed(law, of.tail, of.p, found)
+    };
     sought.iter().map(one).collect()
 }
 
