@@ -410,8 +410,8 @@ impl<const W: usize> Work for Judge<'_, W> {
             taken[lane] = if open & (next >= SOLVED) { 1.0 } else { 0.0 };
             // Derivatives that are as near as this serve all further steps.
             fresh[lane] = if open & (next == OPEN) & (step >= NEAR) & !self.linear { 1.0 } else { 0.0 };
-            // Between shorter steps rounding decides, and before the first one there is none.
-            let ratio = if (before >= NEAR) & (before < f64::INFINITY) { step / before } else { 0.0 };
+            // Between shorter steps rounding decides. Before the first one stands infinity, which makes the ratio 0.
+            let ratio = if before >= NEAR { step / before } else { 0.0 };
             contraction[lane] = if open & (ratio > contraction[lane]) { ratio } else { contraction[lane] };
             last[lane] = step;
         }

@@ -5,11 +5,13 @@ use sensitol_testing::{parse, repository};
 
 /// Names of the features without tolerance.
 fn bare(gaps: &[CompletenessGap]) -> Vec<&str> {
-    let name = |gap| match gap {
-        &CompletenessGap::FeatureWithoutTolerance { ref feature } => Some(feature.as_str()),
-        _ => None,
-    };
-    gaps.iter().filter_map(name).collect()
+    let mut names = Vec::new();
+    for gap in gaps {
+        if let CompletenessGap::FeatureWithoutTolerance { feature } = gap {
+            names.push(feature.as_str());
+        }
+    }
+    names
 }
 
 /// A block with a hole on a table, with these keys at the hole and these lines before the parts.

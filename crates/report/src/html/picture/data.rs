@@ -134,7 +134,7 @@ fn enlargement(drawing: &Drawing, deviation: &SceneDeviation) -> Option<f64> {
         return None;
     }
     let wanted = SHOWN / largest;
-    let ten = libm::pow(10.0, wanted.log10().floor());
+    let ten = libm::pow(10.0, libm::log10(wanted).floor());
     let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * ten <= wanted).unwrap_or(1.0);
     Some(step * ten)
 }
@@ -152,5 +152,5 @@ fn flat(drawing: &Drawing, deviation: &SceneDeviation, enlarged: f64) -> Vec<f64
 
 /// Decimals with which a value shows a tenth of its sigma.
 fn decimals(sigma: f64) -> usize {
-    if sigma > 0.0 { (2.0 - sigma.log10().floor()).clamp(0.0, 9.0) as usize } else { 3 }
+    if sigma > 0.0 { (2.0 - libm::log10(sigma).floor()).clamp(0.0, 9.0) as usize } else { 3 }
 }

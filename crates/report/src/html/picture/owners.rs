@@ -22,9 +22,9 @@ pub(super) fn drivers(scene: &AssemblyScene, pictured: &[PicturedCharacteristic]
     let mut text = String::new();
     for (index, one) in pictured.iter().enumerate() {
         let hidden = if index == first { "" } else { " hidden" };
-        let _ = write!(
+        let _ = writeln!(
             text,
-            "<table class=\"owners\" data-owners=\"{index}\"{hidden}><caption>Contributions to the variance of {}</caption><tbody>\n",
+            "<table class=\"owners\" data-owners=\"{index}\"{hidden}><caption>Contributions to the variance of {}</caption><tbody>",
             escaped(&one.name)
         );
         let shown: Vec<&OwnerShare> = one.shares.iter().filter(|share| share.value.abs() >= SMALL).take(ROWS).collect();
