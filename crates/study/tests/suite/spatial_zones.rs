@@ -594,7 +594,7 @@ x2 = {{ of = "other.ball", from = "flange.frame", along = "x", unit = "mm" }}
 /// The examples of drawings keep their units, checked and as written, and have the mobility that their text says.
 #[test]
 fn examples_of_drawings_check_their_units() {
-    let studies = [("examples/shaft-two-bores/study.toml", 1), ("examples/bolted-flange/study.toml", 0)];
+    let studies = [("examples/shaft-two-bores/study.toml", 1), ("tests/data/assembly3d/bolted-flange.toml", 0)];
     for (name, free) in studies {
         let text = read(name);
         let study = parse(&text).unwrap_or_else(|error| panic!("{error}"));
