@@ -20,8 +20,7 @@ const PHASE: f64 = 9.0;
 /// Greatest width of a piece, in sigmas: 16 nodes resolve a normal density over it.
 const WIDEST: f64 = 1.5;
 
-/// Greatest error of a quantile from a table, in sigmas. It changes the share of rejects by a part of about 1e-7, a thousandth of the error of
-/// the points that it is for.
+/// Greatest error of a quantile from a table at the scores between its places, in sigmas. The points that it is for have errors far above it.
 const FOLLOWED: f64 = 3e-8;
 
 /// Nodes and weights of the Gauss-Legendre rule with 16 nodes over the interval from 0 to 1.
@@ -235,7 +234,7 @@ impl Input {
 
     /// Turns many normal scores into values with the same probabilities below them, in place.
     ///
-    /// Quantiles without a closed form come from a table, whose error is at most [`FOLLOWED`].
+    /// Smooth laws have a table if it is right to [`FOLLOWED`] in the middle between its places.
     pub(super) fn at_scores(&self, scores: &mut [f64]) {
         if self.normal {
             return;

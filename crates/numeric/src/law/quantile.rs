@@ -23,7 +23,7 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
 /// Quantile whose error is confirmed by the tails on both sides of it. Values with probabilities of their own leave gaps, in which a search
 /// may end beside the cluster that has the quantile. It is then bisected, since a tail falls outward everywhere.
 fn bracketed(law: &SurfaceLaw, tail: LawTail, p: f64, found: LawFigure) -> LawFigure {
-    if law.given.inputs.iter().all(|input| input.atoms.is_empty()) || !found.error.is_finite() {
+    if law.given.inputs.iter().all(|input| input.atoms.is_empty()) || !(found.value + found.error).is_finite() {
         return found;
     }
     let (sign, reach) = (tail.sign(), BRACKET * found.error);
@@ -31,8 +31,16 @@ fn bracketed(law: &SurfaceLaw, tail: LawTail, p: f64, found: LawFigure) -> LawFi
     if inward.value + inward.error >= p && outward.value - outward.error <= p {
         return found;
     }
-    let [least, most] = law.range();
-    let (mut heavy, mut light) = if tail == LawTail::Upper { (least, most) } else { (most, least) };
+    // The range may have no end, so that the bracket widens from the value that was found.
+    let (mut heavy, mut light) = (found.value, found.value);
+    let mut width = law.sigma();
+    for _ in 0..STEPS {
+        if law.tail(heavy, tail).value > p && law.tail(light, tail).value <= p {
+            break;
+        }
+        (heavy, light) = (found.value - sign * width, found.value + sign * width);
+        width *= 2.0;
+    }
     let scale = SAME * (law.sigma() + law.mean().abs());
     for _ in 0..STEPS {
         let middle = 0.5 * (heavy + light);

@@ -362,3 +362,30 @@ fn quantiles_beside_a_gap_lie_in_their_cluster() {
         }
     }
 }
+
+/// Two pairs of values with a narrow normal distribution beside each: the same clusters, of a law without ends. Quantiles are those of the
+/// normal distribution in each cluster, whose neighbours have less than 1e-300 of it.
+#[test]
+fn quantiles_of_a_law_without_ends_lie_in_their_cluster() {
+    let two = || -> Law { Arc::new(TwoValues::new(-1.0, 1.0).unwrap()) };
+    for width in [1e-5, 1e-3] {
+        let parts = [2.45, 0.13, width].map(|factor| Some(Univariate::of_coefficients(&[factor])));
+        let surrogate = Surrogate { centre: 0.0, parts: parts.to_vec(), interactions: Interactions::none(3) };
+        let inputs = [two(), two(), Arc::new(Normal::new(0.0, 1.0).unwrap()) as Law];
+        let law = SurfaceLaw::of(&surrogate, &inputs, None, &LawOptions::default()).unwrap();
+        let clusters = [-2.58, -2.32, 2.32, 2.58];
+        for p in [1.35e-3, 0.01, 0.05, 0.2, 0.3, 0.45f64] {
+            let exact = clusters[(4.0 * p) as usize]
+                + width * sensitol_numeric::distribution::standard_normal::quantile((4.0 * p).fract());
+            for (tail, sign) in [(LawTail::Lower, 1.0), (LawTail::Upper, -1.0)] {
+                let sought = Sought { tail, p, near: -2.4 * sign, density: 0.2 };
+                for found in [law.quantile(tail, p), law.quantiles(&[sought])[0]] {
+                    // The transform resolves the edge of a cluster to 4e-5 sigma.
+                    let off = (sign * found.value - exact).abs();
+                    assert!(off <= 3.0 * found.error + 1e-4, "{width} {p}: {found:?}, exact {exact}");
+                    assert!(found.error <= 0.02, "{width} {p}: {found:?}");
+                }
+            }
+        }
+    }
+}
