@@ -1,4 +1,20 @@
-//! Names and texts from outside: the nearest known name, removal of hidden characters, and shortening.
+//! Names and texts from outside: the nearest known name, removal of hidden characters, shortening, and lists.
+
+/// The first names of a list, and the number of the others.
+///
+/// ```
+/// use sensitol_numeric::names::first_of;
+/// let names = ["a", "b", "c"].map(str::to_owned);
+/// assert_eq!(first_of(&names, 2), "a, b and 1 more");
+/// assert_eq!(first_of(&names, 3), "a, b, c");
+/// ```
+pub fn first_of(names: &[String], most: usize) -> String {
+    let named = names[..names.len().min(most)].join(", ");
+    match names.len().saturating_sub(most) {
+        0 => named,
+        more => format!("{named} and {more} more"),
+    }
+}
 
 /// True for characters that are invisible and move the visible ones: control characters, and those that turn the direction of text (Unicode
 /// 16, `Bidi_Control`).

@@ -6,6 +6,7 @@ use crate::args::CheckArgs;
 use crate::commands::several;
 use crate::failure::{Exit, Failure};
 use crate::output::{Destination, Look};
+use sensitol_numeric::names::first_of;
 use sensitol_study::{AssemblyScene, CompletenessGap, Mobility, Study};
 
 /// Most names in a line.
@@ -107,18 +108,11 @@ fn gaps(gaps: &[CompletenessGap]) -> String {
         }
     }
     if !features.is_empty() {
-        text += &format!("  no tolerance, though characteristics depend on them: {}\n", named(&features));
+        text += &format!("  no tolerance, though characteristics depend on them: {}\n", first_of(&features, NAMED));
     }
     if !dimensions.is_empty() {
         let by = "[general] standard = \"ISO 2768-m\"";
-        text += &format!("  no tolerance, where {by} would give one: {}\n", named(&dimensions));
+        text += &format!("  no tolerance, where {by} would give one: {}\n", first_of(&dimensions, NAMED));
     }
     text
-}
-
-/// Names in a line, the first of many.
-fn named(names: &[String]) -> String {
-    let shown = names.len().min(NAMED);
-    let more = if shown < names.len() { format!(" and {} more", names.len() - shown) } else { String::new() };
-    names[..shown].join(", ") + &more
 }

@@ -1,6 +1,7 @@
 //! Reasons why a table cannot become a study.
 
 use crate::import::columns::ROLES;
+use sensitol_numeric::names::first_of;
 
 /// A fault with the name of its cell in a spreadsheet.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -315,18 +316,9 @@ impl ImportProblem {
 }
 
 /// Number of names that a message lists.
-const NAMED: usize = 12;
+pub(super) const NAMED: usize = 12;
 
 /// Names in backquotes.
 fn quoted(names: &[String]) -> String {
-    first_of(&names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>())
-}
-
-/// The first names of a list, and the number of the others.
-pub(super) fn first_of(names: &[String]) -> String {
-    let named = names[..names.len().min(NAMED)].join(", ");
-    match names.len().saturating_sub(NAMED) {
-        0 => named,
-        more => format!("{named} and {more} more"),
-    }
+    first_of(&names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>(), NAMED)
 }

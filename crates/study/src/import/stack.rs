@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::import::columns::ColumnRole;
-use crate::import::fault::{ImportFault, ImportProblem, first_of};
+use crate::import::fault::{ImportFault, ImportProblem, NAMED};
 use crate::import::figures::Figures;
 use crate::import::header::{Header, header};
 use crate::import::limits::LimitRows;
@@ -13,6 +13,7 @@ use crate::import::spread::{Band, LimitReading, Spread, limit_reading, refuse_mi
 use crate::import::study_text::{Part, Target, characteristics, dimensions, head, sum};
 use crate::import::title::TitleRows;
 use crate::import::words::is_total;
+use sensitol_numeric::names::first_of;
 
 /// Most equal parts of a row: more are a typing error.
 const MOST_EQUAL: f64 = 1000.0;
@@ -261,7 +262,7 @@ fn parts(table: &mut Table, values: &[f64], spreads: &[Spread]) -> Result<Vec<Pa
         }
     }
     if !numbered.is_empty() {
-        table.notes.push(format!("equal names were numbered: {}", first_of(&numbered)));
+        table.notes.push(format!("equal names were numbered: {}", first_of(&numbered, NAMED)));
     }
     Ok(parts)
 }
@@ -287,7 +288,7 @@ fn refuse_fixed(parts: &[Part], options: &ImportOptions, notes: &mut Vec<String>
         return Err(ImportFault { cell: None, problem: ImportProblem::Fixed { names: fixed } });
     }
     if !fixed.is_empty() {
-        notes.push(format!("without tolerance: {}", first_of(&fixed)));
+        notes.push(format!("without tolerance: {}", first_of(&fixed, NAMED)));
     }
     Ok(())
 }
