@@ -231,6 +231,14 @@ pub struct Assembly {
     pub length_unit: Option<String>,
 }
 
+impl PartJoint {
+    /// Features that the joint joins: its two, and all contacts and the place of the force of a joint that presses.
+    pub fn features(&self) -> impl Iterator<Item = FeatureId> {
+        let pressed = self.press.iter().flat_map(|press| press.targets.iter().copied().chain(press.weight));
+        self.between.into_iter().chain(pressed)
+    }
+}
+
 impl Assembly {
     /// The feature of this index.
     pub fn feature(&self, id: FeatureId) -> &Feature {

@@ -33,10 +33,8 @@ impl Assembly {
 
     /// True if a displacement or tilt of a feature changes a measure.
     fn is_felt(&self, closure: &Closure<'_>, nominal: &[Vec<f64>], id: FeatureId) -> bool {
-        let is_used = |between: &[FeatureId; 2]| between.contains(&id);
-        if !self.joints.iter().any(|joint| is_used(&joint.between))
-            && !self.measures.iter().any(|measure| is_used(&measure.between))
-        {
+        let in_joint = self.joints.iter().any(|joint| joint.features().any(|other| other == id));
+        if !in_joint && !self.measures.iter().any(|measure| measure.between.contains(&id)) {
             return false;
         }
         // A point has no direction.

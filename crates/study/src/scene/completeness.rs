@@ -73,7 +73,7 @@ impl Study {
         for (part, of) in facts.assembly.parts.iter().enumerate() {
             for (feature, own) in of.features.iter().enumerate() {
                 let id = sensitol_spatial::FeatureId { part, feature };
-                let in_joint = facts.assembly.joints.iter().any(|joint| joint.between.contains(&id));
+                let in_joint = facts.assembly.joints.iter().any(|joint| joint.features().any(|other| other == id));
                 let is_reference = of.ground && !in_joint;
                 if influences[part][feature] && !toleranced[facts.index(id)] && !is_reference {
                     let feature = format!("{}.{}", of.name, own.name);
