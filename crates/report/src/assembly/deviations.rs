@@ -9,8 +9,7 @@ impl Report {
     /// Adds the displacements of parts and features at one sigma of each characteristic, upward. A report of a study without an assembly
     /// in space stays as it is.
     ///
-    /// Of all points at which the tangent plane of a characteristic has moved by one sigma, the displacements are those at the most probable
-    /// one: dimension i moves by `sum_j C_ij g_j / sqrt(g C g)`, with covariances C and slopes g.
+    /// The displacements are those at the most probable point at which the tangent plane of a characteristic has moved by one sigma: dimension i moves by `sum_j C_ij g_j / sqrt(g C g)`, with covariances C and slopes g.
     ///
     /// # Errors
     /// Fails like [`Study::scene_deviations`].

@@ -1,5 +1,7 @@
 //! Contributions to the variance by features and joints: the sum over the dimensions that belong to each.
 
+use std::collections::HashMap;
+
 use super::ReportedAssembly;
 use crate::analysis::statistics::CharacteristicStatistics;
 use sensitol::analysis::CharacteristicAnalysis;
@@ -54,13 +56,14 @@ pub(crate) fn owner_shares(assembly: &ReportedAssembly, one: &CharacteristicAnal
     let scene = &assembly.scene;
     let mut shares: Vec<OwnerShare> = Vec::new();
     let mut known = false;
+    let interactions = interactions(one);
     for (row, owner) in one.sensitivities.iter().zip(&scene.owners) {
         let own = match row.first_order {
             Some(index) => Some(index.value),
             None => row.linear_share.map(|linear| linear + row.curvature_share.unwrap_or(0.0)),
         };
         known |= own.is_some();
-        let value = own.unwrap_or(0.0) + interactions(one, &row.dimension);
+        let value = own.unwrap_or(0.0) + interactions.get(&*row.dimension).copied().unwrap_or(0.0);
         let (name, bearer) = match owner {
             DimensionOwner::Feature(index) => (scene.features[*index].name.clone(), ShareOwner::Feature(*index)),
             DimensionOwner::Joint(index) => (scene.joints[*index].name.clone(), ShareOwner::Joint(*index)),
@@ -81,11 +84,16 @@ pub(crate) fn owner_shares(assembly: &ReportedAssembly, one: &CharacteristicAnal
     known.then_some(shares)
 }
 
-/// Half of the interactions of a dimension.
-fn interactions(one: &CharacteristicAnalysis, dimension: &str) -> f64 {
+/// Half of the interactions of every dimension, in one pass over the list.
+fn interactions(one: &CharacteristicAnalysis) -> HashMap<String, f64> {
+    let mut halves = HashMap::new();
     if one.is_of_model() {
-        return 0.0;
+        return halves;
     }
-    let pairs = one.interactions.iter().filter(|pair| pair.dimensions.iter().any(|name| **name == *dimension));
-    0.5 * pairs.filter_map(|pair| pair.share).sum::<f64>()
+    for pair in one.interactions.iter() {
+        for name in pair.dimensions {
+            *halves.entry(name.to_string()).or_insert(0.0) += 0.5 * pair.share.unwrap_or(0.0);
+        }
+    }
+    halves
 }
