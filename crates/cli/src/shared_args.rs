@@ -33,7 +33,7 @@ pub(super) struct HowArgs {
     #[arg(long, value_name = "NAME")]
     pub(super) configuration: Option<String>,
 
-    /// How exact auto makes sigma: its relative error [default: that of the study, or 0.01]
+    /// Relative error of sigma that auto goes down to [default: that of the study, or 0.01]
     #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
     pub(super) accuracy: Option<f64>,
 
