@@ -7,8 +7,9 @@ use crate::allocation::{
 };
 use crate::analysis::analysis_document::CharacteristicSections;
 use crate::document::number::{
-    beside, index, known, plain, power_of_ten, share, short, significant, target_yield, yielded,
+    beside, index, known, plain, power_of_ten, share, short, significant, target_yield, within, yielded,
 };
+use crate::document::rejects::Rejects;
 use crate::document::{
     Bar, Bars, Blocks, Cell, Chart, Columns, DataTable, Document, Element, Fill, Flow, Layer, Line, Paragraph, Plot,
     PlotAxis, PlotPoint, PlotScale, Section, Stroke, Tone, Value,
@@ -22,8 +23,11 @@ use sensitol::allocation::{
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::json_form::finite;
 use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
+/// Most significant digits of a value beside its requirement.
+const MOST_DIGITS: usize = 6;
 /// Significant digits of a cost.
 const COST: usize = 5;
 /// Most labels on the yield axis of the front. With more, only powers of ten of the rejects are labelled.
@@ -148,15 +152,14 @@ impl AllocationReport {
     /// Adds the required joint yield with the values before, after and sampled.
     fn joint_required(&self, section: &mut Section) {
         let Some(one) = &self.joint_requirement else { return };
-        let of = |judged: &Judged| judged.value.and_then(finite).map_or("unknown".to_owned(), yielded);
         let said =
-            Line::from(format!("joint yield {}: {} before, ", target_yield(one.requirement.amount()), of(&one.before)));
+            Line::from(format!("joint yield {}: {} before, ", target_yield(one.requirement.amount()), found(&one.before)));
         let said = match &one.after {
-            Some(after) => said.and(format!("{} after, ", of(after))).and(loud(after.verdict)),
+            Some(after) => said.and(format!("{} after, ", found(after))).and(loud(after.verdict)),
             None => said.and(loud(one.before.verdict)),
         };
         section.line(match &one.sampled {
-            Some(sampled) => said.and(format!("; by a sample {}, ", of(sampled))).and(loud(sampled.verdict)),
+            Some(sampled) => said.and(format!("; by a sample {}, ", found(sampled))).and(loud(sampled.verdict)),
             None => said,
         });
     }
@@ -210,8 +213,8 @@ impl AllocationReport {
             .data("requirement", |one| Cell::text(one.of.requirement.key()))
             .data("required", |one| Cell::data(one.of.requirement.amount()))
             .shown("", |one| Cell::text(wanted(one.of.requirement)))
-            .column("before", "before", |one| measured(&one.of, Some(one.of.before)))
-            .column("after", "after", |one| measured(&one.of, one.of.after))
+            .column("before", "before", |one| measured(Some(&one.of.before)))
+            .column("after", "after", |one| measured(one.of.after.as_ref()))
             .data("met_before", move |one| truth(one.of.before.verdict.met()))
             .data("met", move |one| truth(one.of.after.and_then(|after| after.verdict.met())))
             .column("verdict", "", |one| {
@@ -473,9 +476,26 @@ fn measure(requirement: Requirement, value: f64) -> String {
     }
 }
 
-fn measured(kept: &Kept, judged: Option<Judged>) -> Cell {
+fn measured(judged: Option<&Judged>) -> Cell {
     let value = judged.and_then(|judged| judged.value).and_then(finite);
-    Cell::number(value, |value| measure(kept.requirement, value))
+    Cell::number(value, |_| judged.map_or_else(String::new, found))
+}
+
+/// Formats a judged value in the measure of its requirement, with no digit beyond its interval.
+fn found(judged: &Judged) -> String {
+    let Some(value) = judged.value.and_then(finite) else { return "unknown".to_owned() };
+    let Some([low, high]) = judged.interval.filter(|ends| ends.iter().all(|end| end.is_finite())) else {
+        return measure(judged.requirement, value);
+    };
+    let (full, error) = (measure(judged.requirement, value), one_error(value, [low, high]));
+    match judged.requirement {
+        Requirement::Yield(_) => Rejects::all(1.0 - value, Some(error)).yield_text().unwrap_or(full),
+        Requirement::Cpk(_) | Requirement::Sigma(_) => {
+            let carried = within(value, MOST_DIGITS, Some(error));
+            if carried.len() < full.len() { carried } else { full }
+        }
+        Requirement::Rss | Requirement::WorstCase => full,
+    }
 }
 
 fn wanted(requirement: Requirement) -> String {

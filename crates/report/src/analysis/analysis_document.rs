@@ -27,7 +27,7 @@ use crate::sampling::sampled;
 use crate::{DimensionReport, Report};
 use sensitol::analysis::{CharacteristicAnalysis, Sensitivity, YieldSource};
 use sensitol::extremes::{Extreme, Place};
-use sensitol::method::Basis;
+use sensitol::method::{Basis, ErrorEstimate, ErrorSource};
 use sensitol_numeric::capability::{Capability, EstimatedQuantile, Law, Quantiles};
 use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::pearson::Pearson;
@@ -231,7 +231,12 @@ impl CharacteristicSections for CharacteristicAnalysis {
         match &self.verification {
             Some(found) => section.note(found.words()),
             // No remark if there are no moments, or if nothing that varies has an effect.
-            None if self.mean().is_some() && !self.constant => section.note("not verified by the model"),
+            None if self.mean().is_some() && !self.constant => {
+                let proven = |of: &ErrorEstimate| matches!(of.sources[..], [ErrorSource::Proven { .. }]);
+                let conditional = self.error_estimate.as_ref().is_some_and(|of| !proven(of));
+                let condition = if conditional { ": errors hold if the surface does" } else { "" };
+                section.note(format!("not verified by the model{condition}"));
+            }
             None => {}
         }
         let mut detail = Vec::new();
