@@ -483,7 +483,7 @@ fn of_analysis(contender: Contender, analysis: &Analysis, took: Duration) -> Ran
         sigma: one.moments.map(|moments| moments.sigma()),
         skewness: one.moments.and_then(|moments| moments.skewness()),
         kurtosis: one.moments.and_then(|moments| moments.kurtosis()),
-        yield_: one.capability.and_then(|capability| capability.yield_()),
+        yield_: one.distribution.capability.and_then(|capability| capability.yield_()),
     });
     Ran {
         contender,

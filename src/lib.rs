@@ -18,7 +18,7 @@
 //! assert_eq!(found.run.evaluations, 5);
 //! assert!((clearance.moments.unwrap().sigma() - 0.01 * 2f64.sqrt() / 3.0).abs() < 1e-12);
 //! // The share within the limits: 3.18 sigmas on either side.
-//! assert!((clearance.capability.unwrap().yield_().unwrap() - 0.998537).abs() < 1e-6);
+//! assert!((clearance.distribution.capability.unwrap().yield_().unwrap() - 0.998537).abs() < 1e-6);
 //! # Ok::<(), sensitol::Error>(())
 //! ```
 //!

@@ -120,7 +120,7 @@ impl AllocationTask {
     /// let task = AllocationTask::new(vec![cost(0)?, cost(1)?], vec![None]);
     /// let found = allocate(&problem, &task.towards(Goal::MostCpk { cost_limit: 2.0 }), &AllocationOptions::default())?;
     /// // Both cost 1: tolerances of 0.1, sigma 0.1 by 3 and the root of 2.
-    /// let cpk = found.after.unwrap().characteristics[0].capability.unwrap().cpk.unwrap();
+    /// let cpk = found.after.unwrap().characteristics[0].distribution.capability.unwrap().cpk.unwrap();
     /// assert!((cpk - 2.0 / 2f64.sqrt()).abs() < 1e-6);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

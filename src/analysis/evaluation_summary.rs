@@ -80,7 +80,11 @@ impl Account {
             from_formulas: climbed.from_formulas,
             probes: climbed.probes,
             checks: climbed.checks,
-            samples: characteristics.iter().filter_map(|one| one.model_sampled.as_ref()).map(|one| one.samples).max(),
+            samples: characteristics
+                .iter()
+                .filter_map(|one| one.evidence.model_sampled.as_ref())
+                .map(|one| one.samples)
+                .max(),
             evaluations,
             full_evaluations: n * n + n + 1,
             rest: climbed.rest,

@@ -18,9 +18,9 @@ impl Analysis {
 impl CharacteristicAnalysis {
     /// Keeps the interactions that matter. The sum of the others is [`interactions_remainder`](Self::interactions_remainder).
     pub fn shorten(&mut self) {
-        let mut remainder = self.interactions_remainder.unwrap_or_default();
+        let mut remainder = self.contributions.interactions_remainder.unwrap_or_default();
         // The strongest are first: the index is the rank.
-        self.interactions.retain(|rank, pair| {
+        self.contributions.interactions.retain(|rank, pair| {
             let open = pair.missing == Some(Missing::NotEvaluated);
             let listed = rank < MOST && !open && pair.share.is_none_or(|share| share >= LEAST);
             if !listed {
@@ -30,6 +30,6 @@ impl CharacteristicAnalysis {
             }
             listed
         });
-        self.interactions_remainder = (remainder.count > 0).then_some(remainder);
+        self.contributions.interactions_remainder = (remainder.count > 0).then_some(remainder);
     }
 }

@@ -16,14 +16,18 @@ pub use crate::analysis::distribution::surface_law::SurfaceShares;
 pub(crate) use crate::analysis::distribution::surface_law::{law_over, surface_law};
 use crate::analysis::distribution::yield_selection;
 pub use crate::analysis::evaluation_summary::Account;
-pub use crate::analysis::result::characteristic::{CharacteristicAnalysis, Sensitivity};
+pub use crate::analysis::result::characteristic::{CharacteristicAnalysis, MissingPoints, Sensitivity};
+pub use crate::analysis::result::contribution_figures::ContributionFigures;
 pub use crate::analysis::result::coverage_intervals::CoverageIntervals;
+pub use crate::analysis::result::distribution_figures::DistributionFigures;
+pub use crate::analysis::result::evidence::Evidence;
 pub use crate::analysis::result::figure_basis::{FigureBases, FigureBasis};
 pub use crate::analysis::result::interaction::{Interaction, InteractionList, Missing};
 use crate::analysis::result::interaction_listing;
 pub use crate::analysis::result::interaction_remainder::Remainder;
 pub use crate::analysis::result::points_to_decide::points_to_decide;
 pub use crate::analysis::result::quantile_estimates::QuantileEstimates;
+pub use crate::analysis::result::range_figures::{LinearFigures, RangeFigures};
 pub use crate::analysis::result::sampled_model::SampledModel;
 pub use crate::analysis::result::serialisation::CharacteristicShape;
 pub use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, SobolIndices};
@@ -163,7 +167,7 @@ impl Analysis {
             one.characteristic = back.problem.characteristics()[c].clone();
             one.rescale(&mut rescaling);
             // Values of the characteristic, and densities per unit of it.
-            for [at, density, error] in one.density.iter_mut().flatten() {
+            for [at, density, error] in one.evidence.density.iter_mut().flatten() {
                 at.rescale(&mut rescaling);
                 rescaling.divide(density);
                 rescaling.divide(error);
@@ -227,7 +231,7 @@ fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>)
     if signature.costly || !verified {
         model_sample::fall_back(&evaluator, outcome, &kinked, &mut characteristics);
     }
-    characteristics.iter_mut().zip(searched).for_each(|(one, extremes)| one.extremes = extremes);
+    characteristics.iter_mut().zip(searched).for_each(|(one, extremes)| one.range.extremes = extremes);
     let mut found = match signature.costly && verified {
         true => jump::find(&evaluator, outcome, &characteristics),
         false => Vec::new(),
@@ -256,7 +260,7 @@ pub(crate) fn analyze_keeping(
     // Both need matrices of all inputs. From four megabytes on they are computed one after the other, so that only one is in memory.
     let large = outcome.plan.varying().len().pow(2) * size_of::<f64>() > 4 << 20;
     let (bounds, laws) = if large { (bounds(), laws()) } else { join(bounds, laws) };
-    characteristics.iter_mut().zip(bounds).for_each(|(one, bounds)| one.bounds = bounds);
+    characteristics.iter_mut().zip(bounds).for_each(|(one, bounds)| one.range.bounds = bounds);
     let mut laws = yield_selection::settle(problem, &outcome, options, &mut characteristics, laws);
     if !yield_selection::have_joint_yield(&characteristics) {
         // Nothing uses the distributions again, and with many inputs they are large.
@@ -264,13 +268,13 @@ pub(crate) fn analyze_keeping(
     }
     // The list needs much memory with many inputs: it is made after the distributions were dropped.
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
-        one.interactions = interaction_listing::listed(problem, &outcome, c, shares.as_ref());
+        one.contributions.interactions = interaction_listing::listed(problem, &outcome, c, shares.as_ref());
     }
     let joint = (options.target_joint_yield)
         .and_then(|_| yield_selection::joint(problem, options, &mut left, &characteristics, &laws));
     let spent = spent(&outcome, options, ledger.run);
     // The extremes do not affect shares: only the other questions decide whether a share is unfinished.
-    characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
+    characteristics.iter_mut().for_each(|one| one.missing.unfinished = spent.unfinished());
     let non_repeatable = [ledger.non_repeatable, extremes.non_repeatable].concat();
     let warnings = warnings::of(problem, &outcome, &characteristics, &non_repeatable, found);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.ledger.evaluations());
@@ -329,7 +333,7 @@ fn joint_requirement(
     }
     let interval = joint.and_then(|joint| joint_interval(joint, characteristics));
     let judged = Judged::of(requirement, joint.map(|joint| joint.value), interval);
-    Some(judged.unless(characteristics.iter().any(|one| one.unfinished)))
+    Some(judged.unless(characteristics.iter().any(|one| one.missing.unfinished)))
 }
 
 /// Interval that contains a joint yield. Returns None if measured samples leave it unknown.
@@ -352,7 +356,7 @@ fn bounds(
     /// Accuracy of the bounds, as a part of sigma: nearer ends look the same in print.
     const NEAR: f64 = 1e-3;
     let of = |(c, one): (usize, &CharacteristicAnalysis)| {
-        let sigma = one.moments.filter(|_| one.extremes.is_none() && !one.constant)?.sigma();
+        let sigma = one.moments.filter(|_| one.range.extremes.is_none() && !one.constant)?.sigma();
         if sigma > 0.0 { enclose(problem, outcome, c, NEAR * sigma, run) } else { None }
     };
     characteristics.par_iter().enumerate().map(of).collect()

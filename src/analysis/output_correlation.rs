@@ -31,8 +31,9 @@ pub(super) fn correlations(
     if !(2..=OutputCorrelation::MOST).contains(&count) {
         return Vec::new();
     }
-    let sampled =
-        |one: &CharacteristicAnalysis| one.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
+    let sampled = |one: &CharacteristicAnalysis| {
+        one.evidence.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample)
+    };
     let by_model = match characteristics.iter().any(sampled) && left.take(most_points_together(count)) {
         true => output_correlations(problem, options.seed.unwrap_or(Options::SEED)),
         false => Vec::new(),
@@ -43,7 +44,7 @@ pub(super) fn correlations(
             return by_model.map(|Verified { value, error }| (value, Some(error)));
         }
         let (value, drawn) = of_surfaces(outcome, [a, b])?;
-        let left = |one: &CharacteristicAnalysis| one.verification.as_ref().and_then(|of| of.left);
+        let left = |one: &CharacteristicAnalysis| one.evidence.verification.as_ref().and_then(|of| of.left);
         let error = left(ones[0]).zip(left(ones[1])).map(|(u, v)| {
             let apart = (1.0 - value * value).max(0.0);
             (apart * (u + v) + u * v + drawn * drawn).sqrt().max(ROUNDING)

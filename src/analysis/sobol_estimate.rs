@@ -60,20 +60,20 @@ pub(super) fn add(
 impl CharacteristicAnalysis {
     /// Share of the variance that the surface leaves unexplained, if the model was evaluated for it.
     pub fn left(&self) -> Option<f64> {
-        let verified = self.verification.as_ref().and_then(|of| of.left);
-        verified.or(self.model_sampled.as_ref().map(|of| of.left))
+        let verified = self.evidence.verification.as_ref().and_then(|of| of.left);
+        verified.or(self.evidence.model_sampled.as_ref().map(|of| of.left))
     }
 
     /// Error of a share of the surface as a share of the model. Returns None if it is unknown.
     pub fn share_error(&self, share: f64) -> Option<f64> {
-        let left = self.left().filter(|_| self.sampled.is_none())?;
+        let left = self.left().filter(|_| self.evidence.sampled.is_none())?;
         Some((2.0 * (share.max(0.0) * left).sqrt() + left).min(1.0))
     }
 
     /// True if a sample of the model shows that the contributions of the surface are meaningless.
     fn is_distrusted(&self) -> bool {
-        let sampled = self.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
-        (sampled || self.model_sampled.is_some()) && self.left().is_some_and(|left| left > UNTRUSTED)
+        let sampled = self.evidence.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
+        (sampled || self.evidence.model_sampled.is_some()) && self.left().is_some_and(|left| left > UNTRUSTED)
     }
 }
 
@@ -82,8 +82,8 @@ fn forget(one: &mut CharacteristicAnalysis) {
     for row in &mut one.sensitivities {
         (row.linear_share, row.curvature_share) = (None, None);
     }
-    one.interactions.forget_shares();
-    one.left_out_share = None;
+    one.contributions.interactions.forget_shares();
+    one.contributions.left_out_share = None;
 }
 
 /// Stores the indices of dimensions and of factors.
@@ -104,7 +104,7 @@ fn keep(
         }
     }
     let interactions = firsts.map(|firsts| 1.0 - firsts.iter().sum::<f64>());
-    one.indices = Some(SobolIndices { source, factors: together, interactions });
+    one.contributions.indices = Some(SobolIndices { source, factors: together, interactions });
 }
 
 /// Indices from the contributions of the surface: those inside of a factor, and those of every interaction with another.
@@ -119,7 +119,7 @@ fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair>
         Some(row.linear_share? + curvature?)
     };
     let index = |value: f64| EstimatedShare { value, error: one.share_error(value) };
-    let complete = left.is_some() || one.examined_interactions == one.possible_interactions;
+    let complete = left.is_some() || one.contributions.examined_interactions == one.contributions.possible_interactions;
     let mut holders: HashMap<&str, usize> = HashMap::new();
     for (place, factor) in factors.iter().enumerate() {
         holders.extend(factor.iter().map(|&d| (one.sensitivities[d].dimension.as_str(), place)));
@@ -129,7 +129,7 @@ fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair>
         factors.iter().map(|factor| factor.iter().map(own).sum::<Option<f64>>().filter(|_| trusted)).collect();
     let mut across: Vec<Option<f64>> = vec![complete.then_some(0.0); factors.len()];
     let plus = |sum: &mut Option<f64>, share: Option<f64>| *sum = sum.zip(share).map(|(sum, share)| sum + share);
-    for pair in one.interactions.iter() {
+    for pair in one.contributions.interactions.iter() {
         let [a, b] = pair.dimensions.map(holder);
         match (a, b) {
             (Some(a), Some(b)) if a == b => plus(&mut inside[a], pair.share),
@@ -152,7 +152,7 @@ fn of_model(
     factors: &[Vec<usize>],
     run: &Run<'_>,
 ) -> (IndexSource, Vec<Pair>) {
-    let known = one.verification.as_ref().and_then(|of| of.shares.as_ref());
+    let known = one.evidence.verification.as_ref().and_then(|of| of.shares.as_ref());
     if let Some(known) = known {
         let of = |factor: &Vec<usize>| {
             let [d] = factor[..] else { return (None, None) };
@@ -163,11 +163,11 @@ fn of_model(
         return (IndexSource::Exchange, factors.iter().map(of).collect());
     }
     // A model that is sampled to verify results may be evaluated more, if the budget allows it.
-    let verified = one.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
+    let verified = one.evidence.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
     let inputs = factors.iter().map(Vec::len).sum();
     let affordable = verified && !run.stopped() && left.take(most_points_of_shares(inputs));
     let found = affordable.then(|| factor_shares(problem, c, options.seed.unwrap_or(Options::SEED), run)).flatten();
-    let ranks = one.model_sampled.as_ref().map_or(&[][..], |of| &of.ranks);
+    let ranks = one.evidence.model_sampled.as_ref().map_or(&[][..], |of| &of.ranks);
     if found.is_none() && !ranks.is_empty() {
         let of = |factor: &Vec<usize>| match factor[..] {
             [d] => (ranks.iter().find(|(of, _)| *of == d).map(|(_, share)| EstimatedShare::from(*share)), None),

@@ -168,7 +168,7 @@ fn unrepresentable(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysi
         .iter()
         .enumerate()
         .any(|(d, one)| one.second.is_none() && curvature(outcome, c, d).is_some())
-        || analysis.interactions.iter().any(|pair| pair.mixed.is_none() && pair.missing.is_none());
+        || analysis.contributions.interactions.iter().any(|pair| pair.mixed.is_none() && pair.missing.is_none());
     let characteristic = analysis.characteristic.name().to_owned();
     lost.then_some(Warning::Unrepresentable { characteristic })
 }
@@ -361,14 +361,14 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
 
 /// Warning of a surface distribution that points contradict.
 fn refuted_law(analysis: &CharacteristicAnalysis) -> Option<Warning> {
-    let LawRefutation { test, limit, law, counted, error } = analysis.surface_law?.refuted?;
+    let LawRefutation { test, limit, law, counted, error } = analysis.evidence.surface_law?.refuted?;
     let characteristic = analysis.characteristic.name().to_owned();
     Some(Warning::SurfaceLawRefuted { characteristic, test: test.name(), limit, law, counted, error })
 }
 
 /// Warning of extremes without a proof.
 fn not_proven(analysis: &CharacteristicAnalysis) -> Option<Warning> {
-    let extremes = analysis.extremes.as_ref().filter(|extremes| !extremes.proven())?;
+    let extremes = analysis.range.extremes.as_ref().filter(|extremes| !extremes.proven())?;
     Some(Warning::NotProven {
         characteristic: analysis.characteristic.name().to_owned(),
         evaluations: extremes.evaluations,
@@ -382,7 +382,7 @@ fn not_proven(analysis: &CharacteristicAnalysis) -> Option<Warning> {
 /// Warning of moments that no distribution has, or hardly any.
 fn law(analysis: &CharacteristicAnalysis, characteristic: &str) -> Option<Warning> {
     let characteristic = characteristic.to_owned();
-    match analysis.law.as_ref()? {
+    match analysis.evidence.law.as_ref()? {
         // The warning `infinite-moment` reports this case.
         Err(_) if analysis.moments.is_some_and(|moments| moments.sigma() > 0.0 && moments.kurtosis().is_none()) => None,
         Err(error) => Some(Warning::InfeasibleMoments { characteristic, reason: error.to_string() }),

@@ -93,7 +93,7 @@ fn rows() -> &'static [Row] {
                     evaluations: found.run.evaluations as usize,
                     error: (one.moments.unwrap().sigma() / sigma - 1.0).abs(),
                     estimate: one.error_estimate.as_ref().and_then(|estimate| Some(estimate.sigma? / sigma)),
-                    sampled: one.model_sampled.is_some(),
+                    sampled: one.evidence.model_sampled.is_some(),
                 }
             };
             Row {

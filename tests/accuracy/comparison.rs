@@ -62,7 +62,7 @@ fn printed(problem: &Problem) -> (u64, [f64; 4]) {
     let found = analyze(problem, &Options::from(Method::Classic).with_verify(0)).unwrap();
     let one = &found.characteristics[0];
     let (mean, sigma) = (one.moments.unwrap().mean(), one.moments.unwrap().sigma());
-    let (shift, first) = (mean - one.nominal.unwrap(), one.rss.unwrap() / 3.0);
+    let (shift, first) = (mean - one.nominal.unwrap(), one.linear.rss.unwrap() / 3.0);
     let raw = sigma * sigma + shift * shift;
     let skewness = (2.0 * shift.powi(3) - 3.0 * raw * shift) / sigma.powi(3);
     let kurtosis = (3.0 * first.powi(4) + 6.0 * raw * shift * shift - 3.0 * shift.powi(4)) / sigma.powi(4);

@@ -40,7 +40,7 @@ fn figures(one: &CharacteristicAnalysis) -> [Option<(f64, Option<f64>)>; 5] {
         own(moments.map(|of| of.sigma()), estimate.and_then(|of| of.sigma)),
         own(moments.and_then(|of| of.skewness()), estimate.and_then(|of| of.skewness)),
         own(moments.and_then(|of| of.kurtosis()), estimate.and_then(|of| of.kurtosis)),
-        own(one.capability.and_then(|of| of.yield_()), estimate.and_then(|of| of.yield_)),
+        own(one.distribution.capability.and_then(|of| of.yield_()), estimate.and_then(|of| of.yield_)),
     ]
 }
 
@@ -153,7 +153,8 @@ fn the_samples_of_auto_cover_every_figure() {
         let problem = truth.study.problem.clone().asking([first]).unwrap();
         let found = analyze(&problem, &options).unwrap();
         let one = &found.characteristics[0];
-        let mut cases = if one.model_sampled.is_some() { cases_of(truth, Method::Auto, one) } else { Vec::new() };
+        let mut cases =
+            if one.evidence.model_sampled.is_some() { cases_of(truth, Method::Auto, one) } else { Vec::new() };
         cases.iter_mut().for_each(|case| case.name += &format!(" seed {seed}, {} evaluations", found.run.evaluations));
         cases
     };

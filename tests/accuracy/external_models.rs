@@ -101,7 +101,7 @@ fn figures(one: &CharacteristicAnalysis) -> [Option<(f64, f64)>; 5] {
         Some(moments.sigma()).zip(error(|of| of.sigma)),
         moments.skewness().zip(error(|of| of.skewness)),
         moments.kurtosis().zip(error(|of| of.kurtosis)),
-        one.capability.and_then(|of| of.rejected()).zip(error(|of| of.yield_)),
+        one.distribution.capability.and_then(|of| of.rejected()).zip(error(|of| of.yield_)),
     ]
 }
 
@@ -220,6 +220,6 @@ fn a_region_without_a_value_around_the_means_is_not_bounded_by_its_corners() {
     let problem = Problem::new(dimensions, function).unwrap().asking([wanted]).unwrap();
     let found = analyze(&costly(&problem).0, &Options::from(Method::SecondOrder)).unwrap();
     let one = &found.characteristics[0];
-    assert!(one.without_value > 0 && one.verdict() != Some(Verdict::Met), "{:?}", one.yield_interval());
-    assert!(one.verification.as_ref().unwrap().lost_share.unwrap() > 0.476);
+    assert!(one.missing.without_value > 0 && one.verdict() != Some(Verdict::Met), "{:?}", one.yield_interval());
+    assert!(one.evidence.verification.as_ref().unwrap().lost_share.unwrap() > 0.476);
 }

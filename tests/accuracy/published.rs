@@ -29,10 +29,10 @@ fn engine_balance_nominal_values_and_rss() {
     assert!((force.nominal.unwrap() - 12556.9361).abs() < 5e-5);
     assert!((moment.nominal.unwrap() - 941.77020).abs() < 5e-6);
     // Table 7 has 5 digits.
-    relative(force.rss.unwrap(), 24.1068, 2e-5);
-    relative(moment.rss.unwrap(), 2.61086, 2e-5);
+    relative(force.linear.rss.unwrap(), 24.1068, 2e-5);
+    relative(moment.linear.rss.unwrap(), 2.61086, 2e-5);
     // Linear worst case: F ±31.136, M ±4.219.
-    let half = |found: &CharacteristicAnalysis| found.worst_case.map(|[low, high]| 0.5 * (high - low)).unwrap();
+    let half = |found: &CharacteristicAnalysis| found.range.worst_case.map(|[low, high]| 0.5 * (high - low)).unwrap();
     assert!((half(force) - 31.136).abs() < 5e-4);
     assert!((half(moment) - 4.219).abs() < 5e-4);
 }
@@ -121,7 +121,7 @@ fn engine_balance_worst_case_and_the_corners() {
         }
     }
     // The upper end of the linear worst case is the same. The lower one omits the curvature of the angles.
-    let [low, high] = run("engine-balance/study.toml", Method::WorstCase).characteristics[0].worst_case.unwrap();
+    let [low, high] = run("engine-balance/study.toml", Method::WorstCase).characteristics[0].range.worst_case.unwrap();
     assert!((high - 12588.100).abs() < 0.05 && low > 12518.209);
 }
 
@@ -164,8 +164,8 @@ fn stacked_blocks_moments() {
     assert!((moments.sigma() - 0.28920).abs() < 5e-6);
     assert!((moments.skewness().unwrap() + 0.00858).abs() < 5e-6);
     assert!((moments.kurtosis().unwrap() - 3.0005).abs() < 5e-5);
-    assert!((found.rss.unwrap() - 0.8675).abs() < 1e-4);
-    let [low, high] = found.worst_case.unwrap();
+    assert!((found.linear.rss.unwrap() - 0.8675).abs() < 1e-4);
+    let [low, high] = found.range.worst_case.unwrap();
     assert!((0.5 * (high - low) - 2.2129).abs() < 3e-4);
     for options in [
         Options::from(Method::Full),

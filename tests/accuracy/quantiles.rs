@@ -43,7 +43,7 @@ fn quantiles_of_formulas_are_covered_by_their_errors() {
             methods.into_iter().flat_map(move |method| {
                 let found = analysed(truth, &method.into());
                 let sigma = truth.figures[1].0;
-                let quantiles = found.quantiles.unwrap_or_else(|| panic!("{}: no quantiles", truth.name));
+                let quantiles = found.distribution.quantiles.unwrap_or_else(|| panic!("{}: no quantiles", truth.name));
                 let each = quantiles.values.iter().zip(right).filter_map(move |((name, own), right)| {
                     let (own, right) = ((*own)?, right?);
                     let error = own.error.unwrap_or_else(|| panic!("{}: no error of {name}", truth.name));
@@ -75,8 +75,8 @@ fn quantiles_of_a_kink_come_from_points_of_the_model() {
     let mut seen = 0;
     for truth in kinks {
         let found = analysed(&truth, &Method::SecondOrder.into());
-        if found.yield_source == Some(YieldSource::Samples) {
-            assert_eq!(found.quantiles.unwrap().source, YieldSource::Samples, "{}", truth.name);
+        if found.distribution.yield_source == Some(YieldSource::Samples) {
+            assert_eq!(found.distribution.quantiles.unwrap().source, YieldSource::Samples, "{}", truth.name);
             seen += 1;
         }
     }

@@ -367,7 +367,7 @@ fn a_polynomial_that_the_surface_holds_is_exact() {
     for (formula, method, degree) in cases {
         let found = analyze(&study(dimensions.clone(), formula).problem, &verified(method, 18)).unwrap();
         let one = &found.characteristics[0];
-        let kind = one.verification.as_ref().unwrap().kind;
+        let kind = one.evidence.verification.as_ref().unwrap().kind;
         let error = one.error_estimate.as_ref().unwrap().sigma.unwrap() / one.moments.unwrap().sigma();
         match degree {
             Some(degree) => {
@@ -401,11 +401,11 @@ fn checks_cost_as_many_evaluations_as_stated() {
     // N^2 + N + 1, and the check points: 12 near the means and 6 where decisions fall. A parabola is no sine at three sigmas, so that two
     // residuals are located by four points more each.
     assert_eq!((plain.run.evaluations, off.run.evaluations), (13 + check_points(None, 3) as u64 + 8, 13));
-    assert!(off.characteristics[0].verification.is_none());
+    assert!(off.characteristics[0].evidence.verification.is_none());
     let checked = run(&verified(Method::Full, 18));
     let more = checked.run.evaluations - 13;
     assert!((12..=18).contains(&more), "{more}");
-    let verification = checked.characteristics[0].verification.as_ref().unwrap();
+    let verification = checked.characteristics[0].evidence.verification.as_ref().unwrap();
     assert_eq!((verification.kind, verification.points as u64), (VerificationKind::Checks, more));
     // 1 - 0.05^(1/n)
     assert!((verification.unseen.unwrap() - (1.0 - 0.05f64.powf(1.0 / more as f64))).abs() < 1e-12);
@@ -437,7 +437,7 @@ fn methods_that_integrate_are_verified_at_check_points() {
             let found = analyze(&problem, &verified(method, 18)).unwrap();
             assert_eq!(found.run.evaluations as usize, asked.load(Ordering::Relaxed));
             let one = &found.characteristics[0];
-            assert_eq!(one.verification.as_ref().unwrap().kind, VerificationKind::Checks);
+            assert_eq!(one.evidence.verification.as_ref().unwrap().kind, VerificationKind::Checks);
             let (moments, estimate) = (one.moments.unwrap(), one.error_estimate.as_ref().unwrap());
             let (mean, sigma) = (r, (3.0 + 2.0 * r + r * r).sqrt());
             let (off_mean, off_sigma) = ((moments.mean() - mean).abs(), (moments.sigma() - sigma).abs());
@@ -502,12 +502,12 @@ fn a_sample_ends_with_the_time() {
         let found = analyzed(most);
         let one = &found.characteristics[0];
         assert_eq!(found.run.stopped, Some(StopReason::TimeLimit), "{most}");
-        assert!(one.moments.is_some() && one.verification.is_none(), "{most}");
+        assert!(one.moments.is_some() && one.evidence.verification.is_none(), "{most}");
         assert!(one.requirements().iter().all(|judged| judged.verdict != Verdict::Met), "{most}");
         assert!(asked.load(Ordering::Relaxed) <= most + 4096, "{most}: {}", asked.load(Ordering::Relaxed));
     }
     let found = analyzed(usize::MAX);
-    assert!(found.run.stopped.is_none() && found.characteristics[0].verification.is_some());
+    assert!(found.run.stopped.is_none() && found.characteristics[0].evidence.verification.is_some());
     assert!(found.characteristics[0].requirements().iter().all(|judged| judged.verdict == Verdict::Met));
 }
 
@@ -529,7 +529,7 @@ fn a_budget_holds_what_verifies_a_cheap_model() {
             let found = analyze(&problem, &Options::from(method).with_budget(budget)).unwrap();
             let asked = asked.load(Ordering::Relaxed);
             assert!(asked <= budget, "{}: {asked} of {budget}", method.name());
-            let verified = found.characteristics[0].verification.as_ref();
+            let verified = found.characteristics[0].evidence.verification.as_ref();
             assert!(verified.is_none_or(|verified| verified.kind == kind), "{budget}: {verified:?}");
             assert!(verified.is_some() || method == Method::Auto, "{budget}");
             assert!(found.characteristics[0].error_estimate.as_ref().unwrap().sigma.is_some(), "{budget}");

@@ -471,7 +471,7 @@ fn the_middle_of_an_asymmetric_band_stays() {
     let [lower, upper] = found.problem.dimensions()[1].tolerance().unwrap();
     relative(lower, 0.05, 1e-12);
     relative(upper, 0.15, 1e-12);
-    relative(found.after.as_ref().unwrap().characteristics[0].worst_case.unwrap()[1], 10.25, 1e-12);
+    relative(found.after.as_ref().unwrap().characteristics[0].range.worst_case.unwrap()[1], 10.25, 1e-12);
     // Cpk 1: mean 10.1 and 3 sigma sqrt(0.1^2 + T^2) reach 10.25 together.
     let task = AllocationTask::new(task.priced, vec![Some(Requirement::Cpk(1.0))]);
     let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();

@@ -293,7 +293,7 @@ fn the_best_for_a_cost_is_found() {
         for (name, expected) in optimum["tolerances"].as_object().unwrap() {
             assert!((band(&found, name) / expected.as_f64().unwrap() - 1.0).abs() < 1e-6, "{goal:?} {name}");
         }
-        let kept = found.after.as_ref().unwrap().characteristics[0].capability.unwrap();
+        let kept = found.after.as_ref().unwrap().characteristics[0].distribution.capability.unwrap();
         let rejected = kept.below.unwrap() + kept.above.unwrap();
         assert!((rejected / optimum["rejects"].as_f64().unwrap() - 1.0).abs() < 1e-5, "{goal:?}");
     }
@@ -315,7 +315,7 @@ fn nominal_values_move_for_the_best_of_a_cost() {
     // The search stops within 1e-3 sigmas of a, a hundredth of its tolerance.
     assert!((found.moved[0].after - 20.0).abs() < 3e-4, "{:?}", found.moved);
     let sigma = of["optimum"]["sigma"].as_f64().unwrap();
-    let cpk = found.after.as_ref().unwrap().characteristics[0].capability.unwrap().cpk.unwrap();
+    let cpk = found.after.as_ref().unwrap().characteristics[0].distribution.capability.unwrap().cpk.unwrap();
     assert!((cpk / (0.1 / (3.0 * sigma)) - 1.0).abs() < 1e-2, "{cpk}");
     // If the level itself is optimised, limits have no price.
     assert!(found.prices.is_empty(), "{:?}", found.prices);

@@ -23,7 +23,7 @@ fn first_order_knows_no_curvature() {
     let problem = Problem::new(standard(2), Closure::scalar("y", |x| x[0] + x[1] + 0.3 * x[0] * x[0])).unwrap();
     let found = analyze(&problem, &Method::Rss.into()).unwrap().characteristics.remove(0);
     let first = &found.sensitivities[0];
-    assert_eq!((first.curvature_share, first.mean_shift, found.left_out_share), (None, None, None));
+    assert_eq!((first.curvature_share, first.mean_shift, found.contributions.left_out_share), (None, None, None));
     relative(first.second.unwrap(), 0.6, 1e-14);
     relative(first.linear_share.unwrap() + found.sensitivities[1].linear_share.unwrap(), 1.0, 1e-14);
 }
@@ -68,10 +68,10 @@ fn asymmetric_bands_have_asymmetric_worst_cases() {
     ];
     let problem = Problem::new(dimensions, Closure::scalar("y", |x| x[0] - x[1])).unwrap();
     let found = analyze(&problem, &Method::WorstCase.into()).unwrap().characteristics.remove(0);
-    let [low, high] = found.worst_case.unwrap();
+    let [low, high] = found.range.worst_case.unwrap();
     close(low, 5.0 - 0.1 - 0.2, 1e-13, 1.0);
     close(high, 5.0 + 0.3, 1e-13, 1.0);
-    relative(found.rss.unwrap(), 0.2f64.hypot(0.1), 1e-12);
+    relative(found.linear.rss.unwrap(), 0.2f64.hypot(0.1), 1e-12);
     relative(found.moments.unwrap().mean(), 10.1 - 5.1, 1e-13);
 }
 

@@ -490,7 +490,7 @@ fn every_command_has_the_figures_of_closed_forms_at_every_size() {
         let problem = parse(&text).unwrap().problem;
         for method in [Method::Full, Method::SecondOrder, Method::Auto] {
             let found = &analyze(&problem, &method.into()).unwrap().characteristics[0];
-            let (moments, rejected) = (found.moments.unwrap(), found.capability.unwrap().above.unwrap());
+            let (moments, rejected) = (found.moments.unwrap(), found.distribution.capability.unwrap().above.unwrap());
             sensitol_testing::relative(moments.mean(), truth("mean") * scale, 1e-12);
             sensitol_testing::relative(moments.sigma(), truth("sigma") * scale, 1e-12);
             sensitol_testing::relative(moments.skewness().unwrap(), truth("skewness"), 1e-10);
@@ -502,7 +502,7 @@ fn every_command_has_the_figures_of_closed_forms_at_every_size() {
         // The single point of exact derivatives, at the means, has the value 0 and gives no size.
         let exact = Options::from(Method::Full).with_derivatives(DerivativeSource::Exact);
         let found = analyze(&problem, &exact).unwrap();
-        let rejected = found.characteristics[0].capability.unwrap().above.unwrap();
+        let rejected = found.characteristics[0].distribution.capability.unwrap().above.unwrap();
         sensitol_testing::relative(1e6 * rejected, truth("ppm_above"), 1e-9);
         assert!(found.warnings.iter().all(|warning| warning.code() == "pearson-differs"), "{:?}", found.warnings);
         let found = &simulate(&problem, &SimulationOptions::default()).unwrap().characteristics[0];
@@ -595,7 +595,7 @@ fn a_costly_model_of_extreme_size_is_asked_no_more() {
                     moments.mean() / size,
                     moments.sigma() / size,
                     moments.skewness(),
-                    found.characteristics[0].capability.unwrap().below,
+                    found.characteristics[0].distribution.capability.unwrap().below,
                 )
             };
             let one = run(1.0);

@@ -53,7 +53,7 @@ fn what_is_linear_is_soon_known() {
         assert_eq!(analysis.run.evaluations, asked.distinct() as u64);
         assert_eq!(analysis.run.evaluations, 2 * n as u64 + 1 + 16);
         relative(sigma(&analysis), (n as f64).sqrt(), 1e-13);
-        assert_eq!(analysis.characteristics[0].left_out_share, Some(0.0));
+        assert_eq!(analysis.characteristics[0].contributions.left_out_share, Some(0.0));
         assert!(codes(&analysis).is_empty(), "{:?}", codes(&analysis));
         assert!(estimate(&analysis) < 1e-12);
     }
@@ -65,7 +65,7 @@ fn the_same_study_gives_the_same_numbers() {
     let f = |x: &[f64]| (0.3 * x[0]).exp() * (1.0 + 0.2 * x[1]) + x[2] * x[2] * 0.1 + x[3] - x[4] * x[0] * 0.05;
     let one = of(standard(5), f, &auto(0.05));
     let other = of(standard(5), f, &auto(0.05).with_seed(99));
-    assert!(one.characteristics[0].model_sampled.is_none());
+    assert!(one.characteristics[0].evidence.model_sampled.is_none());
     assert_eq!(one.characteristics, other.characteristics);
     assert_eq!(one.run.evaluations, other.run.evaluations);
     let fine = of(standard(5), f, &auto(0.001));
@@ -127,7 +127,7 @@ fn a_yield_is_known_as_well_as_wanted() {
                 * 0.01
         })
         .sum();
-    assert!((one.capability.unwrap().yield_().unwrap() - share).abs() < 1e-3);
+    assert!((one.distribution.capability.unwrap().yield_().unwrap() - share).abs() < 1e-3);
     let without = of(standard(4), f, &options);
     assert_eq!(without.run.evaluations, of(standard(4), f, &auto(0.05)).run.evaluations);
 }
@@ -151,7 +151,10 @@ fn tails_that_the_law_misses_are_told_of() {
     for (lower, most) in [(-0.175, 0.7), (-0.2, 0.2)] {
         let found = of(lower);
         let (one, exact) = (&found.characteristics[0], below(lower));
-        let (fit, rejected) = (one.pearson.unwrap().rejected().unwrap(), one.capability.unwrap().rejected().unwrap());
+        let (fit, rejected) = (
+            one.evidence.pearson.unwrap().rejected().unwrap(),
+            one.distribution.capability.unwrap().rejected().unwrap(),
+        );
         assert!(fit < most * exact, "{fit} {exact}");
         assert_eq!(codes(&found), ["pearson-differs"]);
         // The surface is the model: their difference is 0 at every point. Midpoints 0.36 sigma/1000 apart cause an error of 3e-8 of the
@@ -160,12 +163,13 @@ fn tails_that_the_law_misses_are_told_of() {
         // No point disagrees, so that the error is the weight of one of 32 768 points.
         let error = one.error_estimate.as_ref().unwrap().yield_.unwrap();
         assert!(error < 1.1 / 32_768.0, "{error}");
-        assert_eq!(one.yield_source, Some(YieldSource::Samples));
+        assert_eq!(one.distribution.yield_source, Some(YieldSource::Samples));
     }
     // In the middle of the distribution the two are near each other, but still differ by more than the error.
     let found = of(-0.05);
     let one = &found.characteristics[0];
-    let (fit, rejected) = (one.pearson.unwrap().rejected().unwrap(), one.capability.unwrap().rejected().unwrap());
+    let (fit, rejected) =
+        (one.evidence.pearson.unwrap().rejected().unwrap(), one.distribution.capability.unwrap().rejected().unwrap());
     assert!((fit / rejected - 1.0).abs() < 0.1 && (rejected / below(-0.05) - 1.0).abs() < 1e-6, "{fit} {rejected}");
 }
 
@@ -285,7 +289,7 @@ fn the_seed_reaches_points_that_stand_in_for_a_surface() {
     let f = |x: &[f64]| (x[0] - x[1]).min(x[2] - x[3]);
     let with = |seed: u64| of(standard(4), f, &auto(0.05).with_seed(seed));
     let (one, other, again) = (with(1), with(2), with(1));
-    assert!(one.characteristics[0].model_sampled.is_some());
+    assert!(one.characteristics[0].evidence.model_sampled.is_some());
     assert_ne!(sigma(&one), sigma(&other));
     assert_eq!(one.characteristics, again.characteristics);
 }
@@ -299,7 +303,7 @@ fn a_kink_is_named_and_sampled() {
     let found = codes(&analysis);
     assert!(found.contains(&"kink") && found.contains(&"untrusted-surrogate"), "{found:?}");
     let one = &analysis.characteristics[0];
-    let sampled = one.model_sampled.as_ref().expect("the model was sampled");
+    let sampled = one.evidence.model_sampled.as_ref().expect("the model was sampled");
     let reference = simulate(&problem(), &SimulationOptions::default().with_samples(400_000)).unwrap();
     let truth = reference.characteristics[0].sigma.unwrap();
     let error = sampled.standard_errors[1].unwrap().hypot(truth.standard_error.unwrap());
@@ -366,7 +370,7 @@ fn a_thousand_dimensions() {
 #[test]
 fn saturation_and_nothing_at_all() {
     let tanh = of(standard(2), |x| (2.0 * x[0]).tanh() + (2.0 * x[1]).tanh(), &auto(0.01));
-    assert!(tanh.characteristics[0].model_sampled.is_some());
+    assert!(tanh.characteristics[0].evidence.model_sampled.is_some());
     // Variance of tanh(2 z): by Gauss quadrature with 150 and 200 nodes, numpy.
     relative(sigma(&tanh), (2.0 * 0.635_261_3f64).sqrt(), 0.02);
     let flat = of(standard(3), |_| 4.0, &auto(0.01));
@@ -486,7 +490,7 @@ fn a_sample_goes_on_from_the_strides() {
     let found = of(standard(4), gaps, &auto(0.05));
     let seen = seen.lock().unwrap();
     let calls: usize = seen.values().sum();
-    assert_eq!(found.characteristics[0].model_sampled.as_ref().unwrap().samples, 1024);
+    assert_eq!(found.characteristics[0].evidence.model_sampled.as_ref().unwrap().samples, 1024);
     assert_eq!(found.run.evaluations as usize, calls);
     assert_eq!(calls, seen.len(), "points that were evaluated twice");
     // The plan before the sample has all second derivatives, and check points.

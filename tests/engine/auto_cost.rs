@@ -97,7 +97,7 @@ fn what_auto_takes() {
             let one = &found.characteristics[0];
             let sigma = one.moments.unwrap().sigma();
             let estimate = one.error_estimate.as_ref().and_then(|of| of.sigma).unwrap_or(f64::NAN);
-            let star = if one.model_sampled.is_some() { "*" } else { "" };
+            let star = if one.evidence.model_sampled.is_some() { "*" } else { "" };
             let (off, said) = ((sigma / truth - 1.0).abs(), estimate / truth);
             format!("{:>8}{star} {off:8.0e} {said:8.0e}", found.run.evaluations)
         };

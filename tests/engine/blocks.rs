@@ -102,7 +102,7 @@ fn rim_and_diamond() {
     let product = shared["exact"]["E offset^2 tilt^2"].as_f64().unwrap();
     relative(moments(&text("d*t"), &[])[1].powi(2), product, 1e-11);
     // The greatest offset is 30 beside the middle: no point has both extremes at once.
-    let worst = analysed(&text("d + 30*t"), &[]).characteristics[0].worst_case.unwrap();
+    let worst = analysed(&text("d + 30*t"), &[]).characteristics[0].range.worst_case.unwrap();
     relative(worst[1], shared["exact"]["greatest offset 30 from the middle"].as_f64().unwrap(), 1e-12);
 }
 
@@ -183,7 +183,7 @@ fn shares_of_rows_sum_to_one() {
     let analysis = analyze(&study.problem, &Method::Full.into()).unwrap();
     let found = &analysis.characteristics[0];
     let own: f64 = found.sensitivities.iter().map(|one| one.linear_share.unwrap() + one.curvature_share.unwrap()).sum();
-    let pairs: f64 = found.interactions.iter().map(|one| one.share.unwrap()).sum();
+    let pairs: f64 = found.contributions.interactions.iter().map(|one| one.share.unwrap()).sum();
     close(own + pairs, 1.0, 1e-9, 1.0);
     let column = |index: usize| rows.iter().map(|row| row[index]).collect::<Vec<f64>>();
     let (a, b) = (column(0), column(1));
@@ -232,7 +232,7 @@ fn the_yield_of_a_line_through_a_disc() {
     let angle = 0.8f64.acos();
     let beyond = (angle - angle.sin() * angle.cos()) / PI;
     let found = &analysed(&text, &[]).characteristics[0];
-    let law = found.surface_law.unwrap();
+    let law = found.evidence.surface_law.unwrap();
     let above = law.above.unwrap();
     assert!((above.value - beyond).abs() <= above.error + 1e-12, "{above:?} for {beyond}");
     assert!(above.error < 1e-6, "{above:?}");
@@ -245,7 +245,7 @@ fn the_yield_of_rows_is_their_share() {
     let text = format!("[dimensions]\n{ROWS}[characteristics]\ny = {{ formula = \"a - b\", upper = 0.3 }}\n");
     let expected = rows.iter().filter(|[a, b, _]| a - b > 0.3).count() as f64 / rows.len() as f64;
     let found = &analysed(&text, &[("lot.csv", &csv)]).characteristics[0];
-    let above = found.surface_law.unwrap().above.unwrap();
+    let above = found.evidence.surface_law.unwrap().above.unwrap();
     assert!((above.value - expected).abs() <= above.error + 1e-12, "{above:?} for {expected}");
     assert!(expected > 0.0 && expected < 1.0);
 }
@@ -257,7 +257,7 @@ fn rows_are_drawn_anew_as_a_whole() {
     let text = format!("[dimensions]\n{ROWS}[characteristics]\ny = {{ formula = \"a - b\" }}\n");
     let found = &analysed(&text, &[("lot.csv", &csv)]).characteristics[0];
     let [_, sigma, ..] = of_values(&rows.iter().map(|[a, b, _]| (1.0 / rows.len() as f64, a - b)).collect::<Vec<_>>());
-    let interval = found.sampling.as_ref().unwrap().mean.unwrap();
+    let interval = found.evidence.sampling.as_ref().unwrap().mean.unwrap();
     let expected = 2.0 * 1.96 * sigma / (rows.len() as f64).sqrt();
     // The ends of a percentile interval of 1000 resamples are accurate to a tenth of its width.
     relative(interval[1] - interval[0], expected, 0.15);
@@ -271,7 +271,7 @@ fn an_even_position_is_a_disc() {
     assert_eq!(moments(position, &[]), moments(&written, &[]));
     let expanded = read(&written, &[]).unwrap();
     assert_eq!(expanded.problem.dimensions()[0].distribution().unwrap().name(), "beta");
-    let worst = analysed(position, &[]).characteristics[0].worst_case.unwrap();
+    let worst = analysed(position, &[]).characteristics[0].range.worst_case.unwrap();
     relative(worst[1], 1.0, 1e-12);
 }
 

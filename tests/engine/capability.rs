@@ -75,9 +75,11 @@ fn two_values_have_no_pearson_law() {
     let study = Study::from_toml(study, "coin.toml").unwrap();
     let analysis = analyze(&study.problem, &Method::SecondOrder.into()).unwrap();
     let found = &analysis.characteristics[0];
-    let Some(Err(PearsonError::Infeasible { bound, law, .. })) = &found.law else { panic!("{:?}", found.law) };
+    let Some(Err(PearsonError::Infeasible { bound, law, .. })) = &found.evidence.law else {
+        panic!("{:?}", found.evidence.law)
+    };
     assert_eq!((*bound, law.values, law.probabilities), (1.0, [-1.0, 1.0], [0.5, 0.5]));
-    assert_eq!((found.capability, found.met()), (None, None));
+    assert_eq!((found.distribution.capability, found.met()), (None, None));
     let warning = analysis.warnings.iter().find(|warning| warning.code() == "infeasible-moments").unwrap();
     assert!(warning.message().contains("two values") && warning.characteristic() == Some("y"), "{}", warning.message());
     // A small normal dimension makes it nearly a member.
@@ -88,7 +90,7 @@ fn two_values_have_no_pearson_law() {
     );
     let analysis = analyze(&mixed.unwrap().problem, &Method::SecondOrder.into()).unwrap();
     assert!(analysis.warnings.iter().any(|warning| warning.code() == "near-infeasible-moments"));
-    assert!(analysis.characteristics[0].capability.is_some());
+    assert!(analysis.characteristics[0].distribution.capability.is_some());
 }
 
 /// Share of rejects beyond the quantiles of one in ten thousand, from ten million assemblies of the model: 1000 beyond each, with a
@@ -99,7 +101,7 @@ fn yields_are_those_of_monte_carlo() {
         let study = Study::read(&repository("examples").join(path)).unwrap();
         let problem = study.problem.only(&[name]).unwrap();
         let analysis = analyze(&problem, &Method::Full.into()).unwrap();
-        let Some(Ok(law)) = &analysis.characteristics[0].law else { panic!("{name} has a law") };
+        let Some(Ok(law)) = &analysis.characteristics[0].evidence.law else { panic!("{name} has a law") };
         let bounds = [law.quantile(1e-4), law.upper_quantile(1e-4)];
         let (batches, rows) = (1000, 10_000);
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
@@ -157,9 +159,9 @@ proptest! {
 fn an_analysis_carries_the_law_of_its_moments() {
     let product = Problem::new(normals(&[3.0, 2.0], &[0.3, 0.6]), Closure::scalar("y", |x| x[0] * x[1])).unwrap();
     let found = &analyze(&product, &Method::Full.into()).unwrap().characteristics[0];
-    let Some(Ok(Law::Pearson(law))) = &found.law else { panic!("a law") };
+    let Some(Ok(Law::Pearson(law))) = &found.evidence.law else { panic!("a law") };
     let moments = found.moments.unwrap();
     let [skewness, excess] = [moments.skewness(), moments.excess()].map(Option::unwrap);
     assert_eq!(**law, Pearson::with_excess(moments.mean(), moments.sigma(), skewness, excess).unwrap());
-    assert_eq!((found.capability.unwrap().yield_(), found.met()), (None, None));
+    assert_eq!((found.distribution.capability.unwrap().yield_(), found.met()), (None, None));
 }

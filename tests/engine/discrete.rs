@@ -140,7 +140,7 @@ fn consistent(joint: f64, yields: &[f64]) {
 }
 
 fn yields(found: &Analysis) -> Vec<f64> {
-    found.characteristics.iter().map(|one| one.capability.unwrap().yield_().unwrap()).collect()
+    found.characteristics.iter().map(|one| one.distribution.capability.unwrap().yield_().unwrap()).collect()
 }
 
 /// A value on a limit keeps it, in the yields and in the joint yield, by every method and by samples. The expected yields are counted with
@@ -213,7 +213,7 @@ fn kinks_of_values_on_a_grid_are_counted_by_points() {
             let found = analyze(&problem, &method.into()).unwrap();
             for (one, exact) in found.characteristics.iter().zip(exact) {
                 let error = one.error_estimate.as_ref().unwrap().yield_.unwrap();
-                let own = one.capability.unwrap().yield_().unwrap();
+                let own = one.distribution.capability.unwrap().yield_().unwrap();
                 assert!((own - exact).abs() <= 3.0 * error + 1e-12 && error < 0.02, "{index}: {own} {error} {exact}");
             }
             let of_all = found.joint.unwrap();
@@ -249,7 +249,7 @@ fn a_difference_of_large_values_is_on_its_limit() {
     for problem in [formula, closure] {
         // The values are 0.02, 0.01 twice, and 0.
         let found = analyze(&problem, &Method::Full.into()).unwrap();
-        let capability = found.characteristics[0].capability.unwrap();
+        let capability = found.characteristics[0].distribution.capability.unwrap();
         assert_eq!(
             (capability.below, capability.above.map(|above| (above - 0.25).abs() < 1e-12)),
             (Some(0.0), Some(true))
@@ -271,7 +271,7 @@ fn a_constant_on_its_limit_keeps_it() {
     let found = analyze(&problem, &Method::SecondOrder.into()).unwrap();
     let sampled = simulate(&problem, &SimulationOptions::default().with_samples(100)).unwrap();
     for c in 0..2 {
-        assert_eq!(found.characteristics[c].capability.unwrap().above, Some(0.0));
+        assert_eq!(found.characteristics[c].distribution.capability.unwrap().above, Some(0.0));
         assert_eq!(sampled.characteristics[c].above, Some(0.0));
     }
 }

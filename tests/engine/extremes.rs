@@ -26,7 +26,7 @@ fn of(
     method: Method,
 ) -> Extremes {
     let problem = Problem::new(dimensions, Closure::scalar("y", function)).unwrap();
-    searched(&problem, method).characteristics.remove(0).extremes.unwrap()
+    searched(&problem, method).characteristics.remove(0).range.extremes.unwrap()
 }
 
 fn ends(extremes: &Extremes) -> [f64; 2] {
@@ -51,7 +51,7 @@ fn the_engine_has_its_true_extremes() {
     for method in [Method::Rss, Method::WorstCase, Method::SecondOrder, Method::SixN, Method::Full, Method::Classic] {
         let analysis = searched(&study.problem, method);
         let found: Vec<[f64; 2]> =
-            analysis.characteristics.iter().map(|one| ends(one.extremes.as_ref().unwrap())).collect();
+            analysis.characteristics.iter().map(|one| ends(one.range.extremes.as_ref().unwrap())).collect();
         // The published values have three decimals.
         for (found, published) in found.iter().zip([[12518.209, 12588.100], [936.988, 945.996]]) {
             for (found, published) in found.iter().zip(published) {
@@ -78,13 +78,13 @@ fn a_linear_characteristic_takes_four_evaluations() {
         assert_eq!(analysis.run.evaluations, 2 * n as u64 + 1 + 4);
         assert_eq!(asked.distinct() as u64, analysis.run.evaluations);
         let one = &analysis.characteristics[0];
-        let found = one.extremes.as_ref().unwrap();
+        let found = one.range.extremes.as_ref().unwrap();
         let reach: f64 = 3.0 * (0..n).map(|j| slope(j).abs()).sum::<f64>();
         // The tolerance allows about one rounding error for each of n terms.
         for (found, exact) in ends(found).into_iter().zip([5.0 - reach, 5.0 + reach]) {
             relative(found, exact, 4e-16 * n as f64);
         }
-        for (found, linear) in ends(found).into_iter().zip(one.worst_case.unwrap()) {
+        for (found, linear) in ends(found).into_iter().zip(one.range.worst_case.unwrap()) {
             relative(found, linear, 1e-13);
         }
         let rising: Vec<Place> = (0..n).map(|j| if slope(j) > 0.0 { Place::Upper } else { Place::Lower }).collect();
@@ -173,7 +173,7 @@ fn two_hundred_dimensions_stay_affordable() {
         let asked = Asked::default();
         let problem = Problem::new(standard(200), asked.watching(move |x| function(&sum, x))).unwrap();
         let analysis = searched(&problem, Method::SecondOrder);
-        let found = analysis.characteristics[0].extremes.as_ref().unwrap();
+        let found = analysis.characteristics[0].range.extremes.as_ref().unwrap();
         for (found, exact) in ends(found).into_iter().zip(exact) {
             close(found, exact, 1e-12, 1.0);
         }
@@ -189,7 +189,7 @@ fn vertices_that_fail_are_left_out() {
     // Defined within a circle: the extremes of a + b there are at (1, 1) sqrt(8)/sqrt(2) = +-4, on its rim.
     let problem = Problem::new(standard(2), refusing(|x| x[0] + x[1], |x| x[0].hypot(x[1]) > 8f64.sqrt())).unwrap();
     let analysis = searched(&problem, Method::SecondOrder);
-    let found = analysis.characteristics[0].extremes.as_ref().unwrap();
+    let found = analysis.characteristics[0].range.extremes.as_ref().unwrap();
     assert!(found.failed > 0 && found.failed < found.evaluations);
     assert!(ends(found).iter().all(|value| value.abs() <= 4.0 + 1e-12 && value.abs() > 3.0), "{:?}", ends(found));
     let warning = analysis.warnings.iter().find(|warning| warning.code() == "not-proven").unwrap().message();
@@ -198,7 +198,7 @@ fn vertices_that_fail_are_left_out() {
 
     let nowhere = Problem::new(standard(2), refusing(|x| x[0], |_| true)).unwrap();
     let analysis = searched(&nowhere, Method::SecondOrder);
-    assert_eq!(analysis.characteristics[0].extremes, None);
+    assert_eq!(analysis.characteristics[0].range.extremes, None);
 }
 
 /// Two characteristics share their points, and dimensions on which a characteristic cannot depend are not moved.
@@ -210,7 +210,8 @@ fn points_are_shared_and_idle_dimensions_left_alone() {
                  [analysis]\nmethod = \"rss\"\nextremes = true\n";
     let study = Study::from_toml(study, "shared.toml").unwrap();
     let analysis = analyze(&study.problem, &study.options).unwrap();
-    let found: Vec<&Extremes> = analysis.characteristics.iter().map(|one| one.extremes.as_ref().unwrap()).collect();
+    let found: Vec<&Extremes> =
+        analysis.characteristics.iter().map(|one| one.range.extremes.as_ref().unwrap()).collect();
     for (found, [least, greatest]) in found.iter().zip([[2.8, 3.6], [5.6, 7.2], [6.9, 7.1]]) {
         close(found.least.value, least, 1e-14, 1.0);
         close(found.greatest.value, greatest, 1e-14, 1.0);
@@ -232,7 +233,7 @@ fn the_budget_holds() {
         let options = Options::from(Method::SecondOrder).with_extremes(true).with_budget(13 + left);
         let analysis = analyze(&problem, &options).unwrap();
         assert_eq!((asked.distinct(), analysis.run.evaluations as usize), (13 + left, 13 + left));
-        let found = analysis.characteristics[0].extremes.as_ref().unwrap();
+        let found = analysis.characteristics[0].range.extremes.as_ref().unwrap();
         assert_eq!((found.ended, found.evaluations), (Ended::Budget, left));
         let warning = analysis.warnings.iter().find(|warning| warning.code() == "not-proven").unwrap().message();
         assert!(warning.contains("The budget ended the search."), "{warning}");
@@ -252,7 +253,7 @@ fn a_stop_is_heeded() {
     let stop = || (count.load(Ordering::Relaxed) > 13).then_some(StopReason::TimeLimit);
     let options = Options::from(Method::SecondOrder).with_extremes(true);
     let analysis = analyze_with(&problem, &options, &Run::to_the_end().stopping_when(&stop)).unwrap();
-    let found = analysis.characteristics[0].extremes.as_ref().unwrap();
+    let found = analysis.characteristics[0].range.extremes.as_ref().unwrap();
     assert!(analysis.run.stopped.is_some() && found.ended == Ended::Stopped);
     assert_eq!(analysis.run.evaluations, count.load(Ordering::Relaxed) as u64);
     assert!(analysis.characteristics[0].moments.is_some());
@@ -263,14 +264,14 @@ fn a_stop_is_heeded() {
 fn nothing_is_searched_unless_asked() {
     let problem = Problem::new(standard(2), Closure::scalar("y", |x| x[0] * x[1])).unwrap();
     let analysis = analyze(&problem, &Method::SecondOrder.into()).unwrap();
-    assert_eq!((analysis.run.evaluations, &analysis.characteristics[0].extremes), (5, &None));
+    assert_eq!((analysis.run.evaluations, &analysis.characteristics[0].range.extremes), (5, &None));
     assert!(analysis.warnings.iter().all(|warning| warning.code() != "not-proven"));
 }
 
 fn of_formula(dimensions: &str, formula: &str, method: Method) -> Extremes {
     let study = format!("[dimensions]\n{dimensions}\n[characteristics]\ny = {{ formula = \"{formula}\" }}\n");
     let study = Study::from_toml(&study, "y.toml").unwrap();
-    searched(&study.problem, method).characteristics.remove(0).extremes.unwrap()
+    searched(&study.problem, method).characteristics.remove(0).range.extremes.unwrap()
 }
 
 /// A proof depends on interval arithmetic alone. Its bounds lie beyond the extremes by no more than 1e-9 of their range.
@@ -312,11 +313,11 @@ fn linear_formulas_equal_the_linear_worst_case() {
     let study = Study::read(&repository("examples/quick-return-published/study.toml")).unwrap();
     let analysis = searched(&study.problem, Method::SecondOrder);
     for one in &analysis.characteristics {
-        let found = one.extremes.as_ref().unwrap();
+        let found = one.range.extremes.as_ref().unwrap();
         assert!(found.proven() && found.evaluations == 4);
         // Two calls and the middle, for each side.
         assert_eq!(found.proof.as_ref().unwrap().boxes, 6);
-        for (found, linear) in ends(found).into_iter().zip(one.worst_case.unwrap()) {
+        for (found, linear) in ends(found).into_iter().zip(one.range.worst_case.unwrap()) {
             relative(found, linear, 1e-13);
         }
     }
@@ -332,12 +333,12 @@ fn thermal_clearance_has_its_extremes() {
     for method in [Method::Rss, Method::SecondOrder, Method::SixN, Method::Full] {
         let analysis = searched(&study.problem, method);
         let one = &analysis.characteristics[0];
-        let found = one.extremes.as_ref().unwrap();
+        let found = one.range.extremes.as_ref().unwrap();
         assert!(found.proven(), "{method:?}");
         // The tolerance covers rounding errors of differences of lengths of 120.
         close(found.least.value, least, 1e-13, 1.0);
         close(found.greatest.value, greatest, 1e-13, 1.0);
-        let linear = one.worst_case.unwrap();
+        let linear = one.range.worst_case.unwrap();
         assert!(found.least.value < linear[0] && linear[1] < found.greatest.value);
     }
 }
@@ -400,7 +401,7 @@ fn extremes_stay_within_the_support() {
     let text = "[dimensions]\nx = { nominal = 1, distribution = \"exponential\" }\ny = { nominal = 5, tolerance = 0.1 }\n\
                 [characteristics]\nz = { formula = \"y - sqrt(x)\" }\n";
     let study = Study::from_toml(text, "study.toml").unwrap();
-    let found = searched(&study.problem, Method::SecondOrder).characteristics.remove(0).extremes.unwrap();
+    let found = searched(&study.problem, Method::SecondOrder).characteristics.remove(0).range.extremes.unwrap();
     for (found, expected) in ends(&found).into_iter().zip([4.9 - 2.0, 5.1]) {
         relative(found, expected, 1e-12);
     }
@@ -484,8 +485,8 @@ fn a_proof_over_a_zone_is_that_of_its_points() {
             let least = of(0.9).fold(f64::INFINITY, f64::min);
             let greatest = of(1.1).fold(f64::NEG_INFINITY, f64::max);
             let one = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0);
-            let bounds = one.bounds.unwrap();
-            let searched = searched(&study.problem, Method::Full).characteristics.remove(0).extremes.unwrap();
+            let bounds = one.range.bounds.unwrap();
+            let searched = searched(&study.problem, Method::Full).characteristics.remove(0).range.extremes.unwrap();
             for (what, proof) in [("bounds", &bounds), ("extremes", searched.proof.as_ref().unwrap())] {
                 let [low, high] = proof.bounds;
                 assert!(proof.proven, "{law}, {formula}, {what}: {proof:?}");
@@ -525,7 +526,7 @@ fn measured_rows_are_the_worst_case_of_their_columns() {
         let path = folder.path().join("study.toml");
         std::fs::write(&path, text).unwrap();
         let study = Study::read(&path).unwrap();
-        let bounds = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0).bounds.unwrap();
+        let bounds = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0).range.bounds.unwrap();
         assert!(bounds.proven, "{formula}: {bounds:?}");
         bounds.bounds
     };

@@ -162,7 +162,7 @@ fn sensitivities_are_exact() {
     let gap = &analysis.characteristics[0];
     let rss = |d: usize| derivatives.first[d].unwrap() * problem.dimensions()[d].half_band();
     let expected = (0..x.len()).map(|d| rss(d).powi(2)).sum::<f64>().sqrt();
-    close(gap.rss.unwrap(), expected, 1e-14, 0.0);
+    close(gap.linear.rss.unwrap(), expected, 1e-14, 0.0);
     close(gap.moments.unwrap().sigma(), expected / 3.0, 1e-13, 0.0);
 }
 
@@ -347,8 +347,8 @@ fn a_quadratic_by_exact_derivatives_and_by_differences() {
             close(a.second.unwrap(), b.second.unwrap(), 1e-9, 1.0);
             close(a.linear_share.unwrap(), b.linear_share.unwrap(), 1e-11, 1.0);
         }
-        for a in one.interactions.iter() {
-            let b = other.interactions.iter().find(|b| b.dimensions == a.dimensions).unwrap();
+        for a in one.contributions.interactions.iter() {
+            let b = other.contributions.interactions.iter().find(|b| b.dimensions == a.dimensions).unwrap();
             assert!(a.exact && !b.exact);
             close(a.mixed.unwrap(), b.mixed.unwrap(), 1e-9, 1.0);
         }

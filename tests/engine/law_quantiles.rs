@@ -51,7 +51,7 @@ fn quantiles_without_limits_are_those_of_the_surface() {
     for halves in [vec![1.0], vec![1.0, 0.7], vec![1.0, 0.9, 0.8], vec![1.0, 0.9, 1.1, 0.8]] {
         let laws: Vec<Law> = halves.iter().map(|&half| uniform(half)).collect();
         let found = only(&problem(&laws, |x| x.iter().sum()));
-        let law = found.surface_law.unwrap();
+        let law = found.evidence.surface_law.unwrap();
         let quantiles = law.quantiles.unwrap();
         let n = halves.len();
         let volume: f64 = halves.iter().enumerate().map(|(i, half)| 2.0 * half * (i + 1) as f64).product();
@@ -69,7 +69,7 @@ fn quantiles_without_limits_are_those_of_the_surface() {
                 "{halves:?}: {figure:?} for {exact}"
             );
         }
-        assert!(found.capability.unwrap().yield_().is_none() && found.yield_source.is_none());
+        assert!(found.distribution.capability.unwrap().yield_().is_none() && found.distribution.yield_source.is_none());
     }
 }
 
@@ -106,7 +106,7 @@ fn quantiles_sought_together_are_those_sought_alone() {
         let still = vec![Relocation::NONE; problem.dimensions().len()];
         let law = law_at(&problem, &analysis.surface, 0, &still).unwrap().unwrap();
         assert_eq!(law.branch(), branch);
-        let found = analysis.characteristics[0].surface_law.unwrap().quantiles.unwrap();
+        let found = analysis.characteristics[0].evidence.surface_law.unwrap().quantiles.unwrap();
         for (together, (tail, p)) in found.iter().zip(QUANTILES) {
             let alone = law.quantile(tail, p);
             let off = (together.value - alone.value).abs();
@@ -127,7 +127,7 @@ fn quantiles_of_a_tree_without_limits_are_those_of_its_law() {
         x[0] + x[1] + x[2] + 0.5 * x[0] * x[1] - 0.4 * x[1] * x[2] + 0.3 * x[1] * x[3] + 0.2 * x[3] * x[4] + x[4]
     });
     let analysis = analysed(&tree);
-    let found = analysis.characteristics[0].surface_law.unwrap();
+    let found = analysis.characteristics[0].evidence.surface_law.unwrap();
     assert_eq!((found.branch, found.counted), (Branch::Sampled, None));
     let still = vec![Relocation::NONE; laws.len()];
     let law = law_at(&tree, &analysis.surface, 0, &still).unwrap().unwrap();
@@ -148,14 +148,14 @@ fn percentiles_follow_the_surface() {
     let limits = SpecLimits::new(Some(-1.0), Some(1.2)).unwrap();
     let limited = problem(&laws, |x| x[0] + x[1]).asking([Characteristic::new("y").with_limits(limits)]).unwrap();
     let (free, limited) = (only(&free), only(&limited));
-    let all = free.surface_law.unwrap().quantiles.unwrap();
-    assert_eq!(Some(all), limited.surface_law.unwrap().quantiles);
+    let all = free.evidence.surface_law.unwrap().quantiles.unwrap();
+    assert_eq!(Some(all), limited.evidence.surface_law.unwrap().quantiles);
     let [low, middle, high] = [0, 3, 6].map(|at| all[at].value);
-    let capability = limited.capability.unwrap();
+    let capability = limited.distribution.capability.unwrap();
     relative(capability.cp_percentile.unwrap(), 2.2 / (high - low), 1e-14);
     let cpk = ((1.2 - middle) / (high - middle)).min((middle + 1.0) / (middle - low));
     relative(capability.cpk_percentile.unwrap(), cpk, 1e-14);
-    assert_eq!(limited.yield_source, Some(YieldSource::SurfaceLaw));
+    assert_eq!(limited.distribution.yield_source, Some(YieldSource::SurfaceLaw));
 }
 
 /// The density of a cycle by points agrees with differences of a distribution function by tensor panels, with the normal input last.
@@ -202,7 +202,7 @@ fn densities_of_every_branch_are_drawn() {
     for (branch, problem) in surfaces() {
         let options = Options::from(Method::Full).with_verify(0).with_densities(true);
         let found = analyze(&problem, &options).unwrap().characteristics.remove(0);
-        let table = found.density.unwrap_or_else(|| panic!("{branch:?} has a density"));
+        let table = found.evidence.density.unwrap_or_else(|| panic!("{branch:?} has a density"));
         let area: f64 = table.windows(2).map(|two| 0.5 * (two[1][0] - two[0][0]) * (two[0][1] + two[1][1])).sum();
         let error: f64 = table.windows(2).map(|two| 0.5 * (two[1][0] - two[0][0]) * (two[0][2] + two[1][2])).sum();
         // The errors come from trapezia over corners, and over the logarithmic peak of a form of two normal inputs; 1e-4 lies beyond the
@@ -240,7 +240,7 @@ fn counted_shares_are_within_their_errors() {
             let limits = SpecLimits::new(Some(lower + 1e-9), Some(upper - 1e-9)).unwrap();
             let problem = problem(&laws, |x| x.iter().sum());
             let found = only(&problem.asking([Characteristic::new("y").with_limits(limits)]).unwrap());
-            let law = found.surface_law.unwrap();
+            let law = found.evidence.surface_law.unwrap();
             assert!(law.counted.is_some_and(|points| points >= 8192) && law.branch == Branch::Sampled);
             let (below, above) = (law.below.unwrap(), law.above.unwrap());
             let (exact_below, exact_above) = (share_below(lower + 1e-9), 1.0 - share_below(upper - 1e-9));
@@ -266,7 +266,8 @@ fn many_values_beside_a_density_are_exact() {
     let limit = measured.mean() + 2.0 * measured.sigma();
     let limits = SpecLimits::new(None, Some(limit)).unwrap();
     let problem = problem(&[measured, normal(sigma)], |x| x[0] + x[1]);
-    let law = only(&problem.asking([Characteristic::new("y").with_limits(limits)]).unwrap()).surface_law.unwrap();
+    let law =
+        only(&problem.asking([Characteristic::new("y").with_limits(limits)]).unwrap()).evidence.surface_law.unwrap();
     assert_eq!(law.counted, None);
     let exact: f64 = list.iter().map(|x| 0.5 * libm::erfc((limit - x) / (sigma * 2f64.sqrt()))).sum::<f64>() / 400.0;
     let found = law.above.unwrap();
@@ -283,7 +284,8 @@ fn two_lists_are_a_step_function() {
     let limit = sums[89_000] + 1e-9;
     let limits = SpecLimits::new(None, Some(limit)).unwrap();
     let problem = problem(&laws, |x| x[0] + x[1]);
-    let law = only(&problem.asking([Characteristic::new("y").with_limits(limits)]).unwrap()).surface_law.unwrap();
+    let law =
+        only(&problem.asking([Characteristic::new("y").with_limits(limits)]).unwrap()).evidence.surface_law.unwrap();
     assert!(law.steps && law.counted.is_none());
     relative(law.above.unwrap().value, 999.0 / 90_000.0, 1e-9);
 }

@@ -56,10 +56,11 @@ fn below(limit: f64, angles: usize, length: f64, y: impl Fn([f64; 3]) -> f64) ->
 /// Checks that the share below the limit is right within three of its errors, and that the surface distribution has passed its tests.
 fn agrees(analysis: &Analysis, right: f64) {
     let one: &CharacteristicAnalysis = &analysis.characteristics[0];
-    let (below, error) = (one.capability.unwrap().below.unwrap(), one.error_estimate.as_ref().unwrap().yield_.unwrap());
+    let (below, error) =
+        (one.distribution.capability.unwrap().below.unwrap(), one.error_estimate.as_ref().unwrap().yield_.unwrap());
     assert!((below - right).abs() <= 3.0 * error, "{below} ± {error}, right {right}");
     assert!(error < 0.02 * right, "{error} of {right}");
-    let law = one.surface_law.unwrap();
+    let law = one.evidence.surface_law.unwrap();
     assert!(law.refuted.is_none() && law.counted.is_none(), "{law:?}");
     let quantiles = law.quantiles.unwrap().map(|figure| figure.value);
     assert!(quantiles.is_sorted(), "{quantiles:?}");
@@ -100,7 +101,7 @@ fn a_cosine_at_its_top_has_quantiles_in_closed_form() {
     let right = 2.0 * sum.probability().unwrap().cdf(-(0.998f64).acos());
     agrees(&analysis, right);
     let near = 0.01 * one.moments.unwrap().sigma();
-    let coverage = one.coverage.unwrap();
+    let coverage = one.distribution.coverage.unwrap();
     let expected = [[quantile(0.025), quantile(0.975)], [quantile(0.05), 0.0]];
     for (found, expected) in [coverage.equal_tails, coverage.shortest].iter().flatten().zip(expected.iter().flatten()) {
         assert!((found - expected).abs() < near, "{coverage:?}, right {expected:?}");

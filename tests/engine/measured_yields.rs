@@ -76,8 +76,11 @@ fn rows_without_a_reject_meet_no_target_of_a_thousandth() {
     let study = study(&rows, "", upper, 0.999);
     let analysis = analyze(&study.problem, &study.options).unwrap();
     let one = &analysis.characteristics[0];
-    assert_ne!(one.yield_source, Some(YieldSource::Proof));
-    assert_eq!((one.capability.unwrap().yield_(), one.verdict()), (Some(1.0), Some(Verdict::Inconclusive)));
+    assert_ne!(one.distribution.yield_source, Some(YieldSource::Proof));
+    assert_eq!(
+        (one.distribution.capability.unwrap().yield_(), one.verdict()),
+        (Some(1.0), Some(Verdict::Inconclusive))
+    );
     let [low, high] = one.yield_interval().unwrap();
     close(low, 1.0 - most, 1e-12, 0.0);
     assert_eq!(high, 1.0);
@@ -101,7 +104,10 @@ fn rows_without_a_reject_meet_no_target_of_a_thousandth() {
 
     let swept = sweep(&study.problem, "x", &[one.nominal.unwrap()], &study.options).unwrap();
     let swept = &swept.analyses[0].as_ref().unwrap().characteristics[0];
-    assert_eq!((swept.verdict(), swept.yield_source), (Some(Verdict::Inconclusive), one.yield_source));
+    assert_eq!(
+        (swept.verdict(), swept.distribution.yield_source),
+        (Some(Verdict::Inconclusive), one.distribution.yield_source)
+    );
     let compared = compare(&study.problem, &CompareOptions::default().with_reference(20_000)).unwrap();
     assert!(compared.ran.len() > 8);
     assert!(compared.ran.iter().all(|ran| ran.verdicts[0] != Some(Verdict::Met)), "{:?}", compared.ran);
@@ -130,7 +136,7 @@ fn a_small_share_leaves_little_open() {
     let rows = drawn(&law(Normal::new(0.0, 0.05).unwrap()), 60, 1);
     let study = study(&rows, "z = { nominal = 0.0, sigma = 1.0 }", 4.0, 0.999);
     let one = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0);
-    assert_eq!((one.verdict(), one.yield_source), (Some(Verdict::Met), Some(YieldSource::SurfaceLaw)));
+    assert_eq!((one.verdict(), one.distribution.yield_source), (Some(Verdict::Met), Some(YieldSource::SurfaceLaw)));
     let one = simulate(&study.problem, &SimulationOptions::default()).unwrap().characteristics.remove(0);
     assert_eq!(one.verdict(), Some(Verdict::Met));
 }
@@ -143,7 +149,7 @@ fn rejects_among_rows_are_a_count() {
     let study = study(&rows, "", upper, 0.9);
     let one = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0);
     let [low, high] = clopper_pearson(4.0, 195.0);
-    let [least, most] = one.sampling.unwrap().rejected.unwrap();
+    let [least, most] = one.evidence.sampling.unwrap().rejected.unwrap();
     close(least, low, 1e-9, 0.0);
     close(most, high, 1e-9, 0.0);
 }
@@ -346,5 +352,5 @@ fn an_example_of_measured_parts_proves_nothing() {
     let one = analyze(&problem, &study.options).unwrap().characteristics.remove(0);
     close(1.0 - one.yield_interval().unwrap()[0], 1.0 - 0.025_f64.powf(1.0 / 60.0), 0.02, 0.0);
     assert_eq!(one.verdict(), Some(Verdict::Inconclusive));
-    assert_ne!(one.yield_source, Some(YieldSource::Proof));
+    assert_ne!(one.distribution.yield_source, Some(YieldSource::Proof));
 }

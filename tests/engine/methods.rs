@@ -56,7 +56,7 @@ fn linear_functions_are_exact() {
             relative(sensitivity.first.unwrap(), slope, 1e-9);
         }
         let worst: f64 = dimensions.iter().zip(slopes).map(|(d, a)| (a * d.half_band()).abs()).sum();
-        let [low, high] = found.worst_case.unwrap();
+        let [low, high] = found.range.worst_case.unwrap();
         relative(high - low, 2.0 * worst, 1e-10);
     }
 }
@@ -70,7 +70,7 @@ fn quadratics_are_exact() {
         let variance = 1.0 + 4.0 + 2.0 * 0.09 + 0.49 + 0.04 + 1.0;
         relative(found.moments.unwrap().sigma(), f64::sqrt(variance), 1e-14);
         relative(found.moments.unwrap().mean(), 1.3, 1e-14);
-        let strongest = found.interactions.get(0).unwrap();
+        let strongest = found.contributions.interactions.get(0).unwrap();
         assert_eq!(strongest.dimensions, ["x1", "x2"]);
         relative(strongest.mixed.unwrap(), 0.7, 1e-13);
         relative(strongest.share.unwrap(), 0.49 / variance, 1e-13);
@@ -187,7 +187,7 @@ proptest! {
         });
         let found = &analysis.characteristics[0];
         let own: f64 = (0..4).map(|d| found.share(d).unwrap()).sum();
-        let together: f64 = found.interactions.iter().map(|interaction| interaction.share.unwrap()).sum();
+        let together: f64 = found.contributions.interactions.iter().map(|interaction| interaction.share.unwrap()).sum();
         close(own + together, 1.0, 1e-11, 1.0);
     }
 }
@@ -212,12 +212,12 @@ fn six_n_picks_the_strongest_pairs() {
     // x4 and x5 have large curvature but no slope. x0 has the largest slope.
     let f = |x: &[f64]| 3.0 * x[0] + 0.1 * (x[1] + x[2] + x[3]) + 2.0 * x[4] * x[4] + x[5] * x[5] + 0.5 * x[4] * x[5];
     let found = analysis(standard(6), Method::SixN, f).characteristics.remove(0);
-    assert_eq!(found.interactions.len(), 6);
-    assert_eq!(found.interactions.get(0).unwrap().dimensions, ["x4", "x5"]);
-    relative(found.interactions.get(0).unwrap().mixed.unwrap(), 0.5, 1e-13);
-    assert_eq!((found.possible_interactions, found.left_out_share), (15, None));
+    assert_eq!(found.contributions.interactions.len(), 6);
+    assert_eq!(found.contributions.interactions.get(0).unwrap().dimensions, ["x4", "x5"]);
+    relative(found.contributions.interactions.get(0).unwrap().mixed.unwrap(), 0.5, 1e-13);
+    assert_eq!((found.contributions.possible_interactions, found.contributions.left_out_share), (15, None));
     let three = analysis(standard(3), Method::SixN, |x| x[0] * x[1] + x[2]).characteristics.remove(0);
-    assert_eq!(three.left_out_share, Some(0.0), "at N = 3 all pairs are examined");
+    assert_eq!(three.contributions.left_out_share, Some(0.0), "at N = 3 all pairs are examined");
 }
 
 #[test]
@@ -229,7 +229,8 @@ fn pairs_can_be_chosen() {
     };
     let examined = |options: &Options| {
         let found = analyze(&problem, options).unwrap().characteristics.remove(0);
-        let mut pairs: Vec<String> = found.interactions.iter().map(|pair| pair.dimensions.join("-")).collect();
+        let mut pairs: Vec<String> =
+            found.contributions.interactions.iter().map(|pair| pair.dimensions.join("-")).collect();
         pairs.sort();
         pairs.join(" ")
     };

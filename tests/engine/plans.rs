@@ -231,8 +231,8 @@ fn pairs_that_no_characteristic_shares_are_not_evaluated() {
     .unwrap();
     let analysis = analyze(&study.problem, &study.options).unwrap();
     assert_eq!(analysis.run.evaluations, 1 + 6 + 2 * 2);
-    assert_eq!(analysis.characteristics[0].possible_interactions, 1);
-    assert_eq!(analysis.characteristics[0].left_out_share, Some(0.0));
+    assert_eq!(analysis.characteristics[0].contributions.possible_interactions, 1);
+    assert_eq!(analysis.characteristics[0].contributions.left_out_share, Some(0.0));
     let alone = analyze(&study.problem.clone().only(&["ab"]).unwrap(), &study.options).unwrap();
     assert_eq!((alone.run.evaluations, alone.varying), (7, 2));
 }
@@ -265,14 +265,14 @@ fn a_failed_side_costs_the_curvature_and_both_the_moments() {
     let found = &analysis.characteristics[0];
     relative(found.sensitivities[0].first.unwrap(), 3.0, 1e-14);
     assert_eq!((found.sensitivities[0].second, found.sensitivities[0].curvature_share), (None, None));
-    assert_eq!(found.left_out_share, None);
+    assert_eq!(found.contributions.left_out_share, None);
     relative(found.moments.unwrap().sigma(), 11f64.sqrt(), 1e-14);
     assert_eq!(warnings(&analysis, "lost-derivative"), 1);
 
     let both = Problem::new(standard(2), refusing(function, |x| x[0] != 0.0)).unwrap();
     let analysis = analyze(&both, &Method::SecondOrder.into()).unwrap();
     let found = &analysis.characteristics[0];
-    assert_eq!((found.moments, found.rss, found.worst_case), (None, None, None));
+    assert_eq!((found.moments, found.linear.rss, found.range.worst_case), (None, None, None));
     assert_eq!(found.sensitivities[1].second, Some(2.0), "the other dimension is known all the same");
     assert_eq!(warnings(&analysis, "lost-derivative"), 1);
 }
@@ -282,16 +282,16 @@ fn a_failed_corner_leaves_a_one_sided_interaction() {
     let function = |x: &[f64]| x[0] * x[1];
     let one = Problem::new(standard(2), refusing(function, |x| x[0] > 0.0 && x[1] > 0.0)).unwrap();
     let analysis = analyze(&one, &Method::Full.into()).unwrap();
-    relative(analysis.characteristics[0].interactions.get(0).unwrap().mixed.unwrap(), 1.0, 1e-14);
+    relative(analysis.characteristics[0].contributions.interactions.get(0).unwrap().mixed.unwrap(), 1.0, 1e-14);
     assert_eq!((warnings(&analysis, "lost-derivative"), analysis.run.failed), (1, 1));
     let both = Problem::new(standard(2), refusing(function, |x| x[0] * x[1] > 0.0)).unwrap();
     let analysis = analyze(&both, &Method::Full.into()).unwrap();
     let found = &analysis.characteristics[0];
-    let pair = found.interactions.get(0).unwrap();
-    assert_eq!((pair.mixed, pair.share, found.left_out_share), (None, None, None));
+    let pair = found.contributions.interactions.get(0).unwrap();
+    assert_eq!((pair.mixed, pair.share, found.contributions.left_out_share), (None, None, None));
     // Two of four corners have a value.
     let analysis = analyze(&both, &Method::Classic.into()).unwrap();
-    relative(analysis.characteristics[0].interactions.get(0).unwrap().mixed.unwrap(), 1.0, 1e-14);
+    relative(analysis.characteristics[0].contributions.interactions.get(0).unwrap().mixed.unwrap(), 1.0, 1e-14);
 }
 
 #[test]

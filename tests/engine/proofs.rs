@@ -378,7 +378,7 @@ fn wrong(found: &CharacteristicAnalysis, truth: &Truth) -> Option<String> {
         add("total", row.total.map(|of| of.value), truth.total[j]);
     }
     let mut listed = BTreeMap::new();
-    for pair in found.interactions.iter() {
+    for pair in found.contributions.interactions.iter() {
         let [j, k] = pair.dimensions.map(place);
         assert_ne!(pair.origin, Some(DerivativeOrigin::Screened), "an estimate in a proof");
         listed.insert((j.min(k), j.max(k)), pair.share.unwrap());
@@ -395,7 +395,7 @@ fn wrong(found: &CharacteristicAnalysis, truth: &Truth) -> Option<String> {
 }
 
 fn is_exact(found: &CharacteristicAnalysis) -> bool {
-    found.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }))
+    found.evidence.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }))
 }
 
 /// Budget of the analyses. It allows a dozen check points and no sample, because figures that are not proven need no accuracy here.
@@ -506,9 +506,9 @@ fn quadratics_are_known_from_their_formulas() {
     for (name, study, truth) in cases() {
         let all = analyze(&study.problem, &Options::default()).unwrap();
         let found = &all.characteristics[0];
-        assert!(is_exact(found), "{name}: {:?}", found.verification);
-        assert_eq!(found.yield_source, Some(YieldSource::Proof), "{name}");
-        assert_eq!(found.examined_interactions, found.possible_interactions, "{name}");
+        assert!(is_exact(found), "{name}: {:?}", found.evidence.verification);
+        assert_eq!(found.distribution.yield_source, Some(YieldSource::Proof), "{name}");
+        assert_eq!(found.contributions.examined_interactions, found.contributions.possible_interactions, "{name}");
         let moments = found.moments.unwrap();
         let figures = [
             ("sigma", moments.sigma(), 0.0),
@@ -523,7 +523,7 @@ fn quadratics_are_known_from_their_formulas() {
             );
         }
         assert!(moments.mean().abs() <= SAME * moments.sigma(), "{name}: {}", moments.mean());
-        let capability = found.capability.unwrap();
+        let capability = found.distribution.capability.unwrap();
         let error = found.error_estimate.as_ref().unwrap().yield_.unwrap();
         for (side, value) in [("below", capability.below), ("above", capability.above)] {
             let Some(expected) = truth[side].as_f64() else { continue };
@@ -544,16 +544,20 @@ fn an_estimate_stays_an_estimate() {
         let found = analyze(&study.problem, &by_differences).unwrap().characteristics.remove(0);
         let estimated = |found: &CharacteristicAnalysis| {
             let of = |pair: &sensitol::analysis::Interaction<'_>| pair.origin == Some(DerivativeOrigin::Screened);
-            found.interactions.iter().filter(of).count()
+            found.contributions.interactions.iter().filter(of).count()
         };
         if estimated(&found) == 0 {
             continue;
         }
         screened += 1;
-        assert!(!is_exact(&found) && found.yield_source != Some(YieldSource::Proof), "{name}");
-        let examined = found.interactions.len() - estimated(&found);
-        assert!(found.examined_interactions <= examined, "{name}: {}", found.examined_interactions);
-        assert!(found.examined_interactions < found.possible_interactions, "{name}");
+        assert!(!is_exact(&found) && found.distribution.yield_source != Some(YieldSource::Proof), "{name}");
+        let examined = found.contributions.interactions.len() - estimated(&found);
+        assert!(
+            found.contributions.examined_interactions <= examined,
+            "{name}: {}",
+            found.contributions.examined_interactions
+        );
+        assert!(found.contributions.examined_interactions < found.contributions.possible_interactions, "{name}");
     }
     assert!(screened > 0, "no case is screened any more");
 }
@@ -594,7 +598,7 @@ fn a_budget_makes_the_sample_of_a_formula_smaller() {
     let error = |budget: Option<usize>| {
         let options = budget.map_or(Options::default(), |budget| Options::default().with_budget(budget));
         let found = analyze(&study.problem, &options).unwrap().characteristics.remove(0);
-        let verified = found.verification.unwrap();
+        let verified = found.evidence.verification.unwrap();
         assert_eq!(verified.kind, VerificationKind::Sample, "{budget:?}");
         assert!(budget.is_none_or(|budget| verified.points < budget), "{budget:?}: {}", verified.points);
         found.error_estimate.unwrap().sigma.unwrap()

@@ -140,10 +140,10 @@ fn shares_sum_to_one() {
         let found = analysis(standard(4), &method.into(), |x| (x[0] + 0.3 * x[1] * x[2]).exp() + x[3] * x[0]);
         let one = &found.characteristics[0];
         let own: f64 = (0..4).map(|d| one.share(d).unwrap()).sum();
-        let together: f64 = one.interactions.iter().map(|interaction| interaction.share.unwrap()).sum();
-        close(own + together + one.left_out_share.unwrap_or(0.0), 1.0, 1e-12, 1.0);
-        assert_eq!(one.interactions.len(), if method == Method::DimensionReduction { 0 } else { 6 });
-        assert_eq!(one.left_out_share.is_none(), method == Method::DimensionReduction);
+        let together: f64 = one.contributions.interactions.iter().map(|interaction| interaction.share.unwrap()).sum();
+        close(own + together + one.contributions.left_out_share.unwrap_or(0.0), 1.0, 1e-12, 1.0);
+        assert_eq!(one.contributions.interactions.len(), if method == Method::DimensionReduction { 0 } else { 6 });
+        assert_eq!(one.contributions.left_out_share.is_none(), method == Method::DimensionReduction);
     }
 }
 
@@ -172,10 +172,10 @@ fn products_of_two_are_exact() {
         let found = analysis(dimensions.clone(), &with_nodes(method, nodes), |x| x[0] * x[1]);
         cumulants(moments(&found), [mean, variance, third, fourth - 3.0 * variance * variance], 1e-12);
         let one = &found.characteristics[0];
-        close(one.interactions.get(0).unwrap().mixed.unwrap(), 1.0, 1e-12, 1.0);
+        close(one.contributions.interactions.get(0).unwrap().mixed.unwrap(), 1.0, 1e-12, 1.0);
         // Variances 4 and 1/3, and a joint part. The curvatures are 0.
-        close(one.interactions.get(0).unwrap().share.unwrap(), 4.0 / 3.0 / variance, 1e-12, 1.0);
-        assert_eq!(one.left_out_share, Some(0.0));
+        close(one.contributions.interactions.get(0).unwrap().share.unwrap(), 4.0 / 3.0 / variance, 1e-12, 1.0);
+        assert_eq!(one.contributions.left_out_share, Some(0.0));
     }
 }
 
@@ -326,7 +326,7 @@ fn correlated_inputs_go_by_eigenvectors() {
         let one = &parabola.characteristics[0];
         assert_eq!(one.sensitivities[0].linear_share, None, "a correlated dimension has no share by itself");
         close(one.sensitivities[2].linear_share.unwrap(), 1.0 / expected[1], 1e-12, 1.0);
-        assert_eq!(one.left_out_share, None);
+        assert_eq!(one.contributions.left_out_share, None);
     }
     // Cumulants of a product of the two: r, 1 + r^2, 6 r + 2 r^3, 6 (1 + 6 r^2 + r^4).
     let r = 0.6f64;
@@ -441,7 +441,7 @@ fn a_lost_point_is_not_made_up() {
         let function = refusing(|x| x[0] + x[1] * x[1] + x[2], |x| x[1] > 1.0);
         let found = analyze(&Problem::new(standard(3), function).unwrap(), &method.into()).unwrap();
         let one = &found.characteristics[0];
-        assert_eq!((one.moments, one.capability, one.left_out_share), (None, None, None));
+        assert_eq!((one.moments, one.distribution.capability, one.contributions.left_out_share), (None, None, None));
         assert!(one.sensitivities.iter().all(|row| row.linear_share.is_none()));
         close(one.sensitivities[0].first.unwrap(), 1.0, 1e-12, 1.0);
         assert!(found.run.failed > 0);

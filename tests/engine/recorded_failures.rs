@@ -53,7 +53,7 @@ fn counts(problem: &Problem) -> (Vec<usize>, BTreeMap<String, usize>) {
         _ => None,
     });
     let warned = warned.collect();
-    (analysis.characteristics.iter().map(|one| one.without_value).collect(), warned)
+    (analysis.characteristics.iter().map(|one| one.missing.without_value).collect(), warned)
 }
 
 #[test]

@@ -95,13 +95,13 @@ fn quadratics_are_exact() {
     close(second(4), 0.8, 1e-10, 1.0);
     let mixed = |a: &str, b: &str| {
         let named = |pair: &sensitol::analysis::Interaction<'_>| pair.dimensions == [a, b];
-        one.interactions.iter().find(named).unwrap().mixed.unwrap()
+        one.contributions.interactions.iter().find(named).unwrap().mixed.unwrap()
     };
     close(mixed("u", "e"), 0.7, 1e-10, 1.0);
     close(mixed("n", "s"), -0.2, 1e-10, 1.0);
     close(mixed("n", "u"), 0.0, 1e-10, 1.0);
-    assert_eq!((found.basis, one.left_out_share), (Basis::LeastSquares, Some(0.0)));
-    let residual = one.residual.unwrap();
+    assert_eq!((found.basis, one.contributions.left_out_share), (Basis::LeastSquares, Some(0.0)));
+    let residual = one.evidence.residual.unwrap();
     assert_eq!((residual.points, residual.coefficients), (16 + 10 + 1, 21));
     assert!(residual.standard_error.unwrap() < 1e-13);
     assert!(found.warnings.iter().all(|warning| warning.code() != "poor-fit"));
@@ -118,7 +118,7 @@ fn a_cubic_shows_in_the_residual() {
     close(one.sensitivities[0].first.unwrap(), 2.2, 1e-12, 1.0);
     let missed = 4.0 * (1.0f64 - 2.2).powi(2) + 2.0 * (27f64.sqrt() - 2.2 * 3f64.sqrt()).powi(2);
     // The design has nine points, the surface six coefficients.
-    let residual = one.residual.unwrap();
+    let residual = one.evidence.residual.unwrap();
     let error = (missed / 3.0).sqrt();
     relative(residual.standard_error.unwrap(), error, 1e-12);
     // Variance of c + a_0 + a_1, whose normal matrix is [9 10 10; 10 22 4; 10 4 22], and of the two slopes, s^2/10 each.
@@ -149,7 +149,7 @@ fn lost_points_are_left_out_or_end_it() {
     let found = analyze(&Problem::new(standard(3), one).unwrap(), &Method::ResponseSurface.into()).unwrap();
     let moments = found.characteristics[0].moments.unwrap();
     relative(moments.variance(), 1.0 + 1.0 + 0.5, 1e-12);
-    assert_eq!(found.characteristics[0].residual.unwrap().points, 14);
+    assert_eq!(found.characteristics[0].evidence.residual.unwrap().points, 14);
     assert_eq!(found.run.failed, 1);
     assert!(found.warnings.iter().any(|warning| warning.code() == "failed-points"));
 
@@ -157,13 +157,13 @@ fn lost_points_are_left_out_or_end_it() {
     let half = refusing(f, |x| x[1] > 0.0);
     let found = analyze(&Problem::new(standard(3), half).unwrap(), &Method::ResponseSurface.into()).unwrap();
     relative(found.characteristics[0].moments.unwrap().variance(), 1.0 + 1.0 + 0.5, 1e-11);
-    let residual = found.characteristics[0].residual.unwrap();
+    let residual = found.characteristics[0].evidence.residual.unwrap();
     assert_eq!((residual.points, residual.coefficients, residual.standard_error), (10, 10, None));
 
     let quarter = refusing(f, |x| x[1] > 0.0 || x[2] > 0.0);
     let found = analyze(&Problem::new(standard(3), quarter).unwrap(), &Method::ResponseSurface.into()).unwrap();
     let lost = &found.characteristics[0];
-    assert_eq!((lost.moments, lost.residual, lost.sensitivities[0].first), (None, None, None));
+    assert_eq!((lost.moments, lost.evidence.residual, lost.sensitivities[0].first), (None, None, None));
     let warning = found.warnings.iter().find(|warning| warning.code() == "lost-moments").unwrap();
     assert!(matches!(warning, Warning::LostMoments { .. }));
     assert!(

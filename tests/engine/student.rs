@@ -86,8 +86,8 @@ fn yields_do_not_need_moments() {
         let found = analyze(&study.problem, &method.into()).unwrap();
         let one = &found.characteristics[0];
         // A single input is integrated to the digits of its distribution function.
-        close(one.capability.unwrap().yield_().unwrap(), expected, 1e-9, 1.0);
-        assert!(one.pearson.is_none(), "{method:?}");
+        close(one.distribution.capability.unwrap().yield_().unwrap(), expected, 1e-9, 1.0);
+        assert!(one.evidence.pearson.is_none(), "{method:?}");
         let of = |warning: &sensitol::warning::Warning| warning.code() == "infinite-moment";
         let messages: Vec<String> = found.warnings.iter().filter(|one| of(one)).map(|one| one.message()).collect();
         assert!(messages[0].starts_with("The skewness of `y` is infinite"), "{messages:?}");
@@ -116,7 +116,7 @@ fn sums_keep_their_tails() {
         );
         let study = Study::from_toml(&text, "student.toml").unwrap();
         let one = analyze(&study.problem, &Method::Full.into()).unwrap().characteristics.remove(0);
-        1.0 - one.surface_law.as_ref().unwrap().above.unwrap().value
+        1.0 - one.evidence.surface_law.as_ref().unwrap().above.unwrap().value
     };
     // Panels and roots are accurate to 1e-9 with an input that has no moments beyond the fourth.
     close(found("a + b"), beside(0.3, 2.0), 1e-9, 1.0);

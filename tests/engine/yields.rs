@@ -34,16 +34,16 @@ fn triangles_keep_what_they_keep() {
     assert!((exact - 0.7440).abs() < 5e-5, "{exact}");
     for (verify, source) in [(None, YieldSource::Proof), (Some(0), YieldSource::SurfaceLaw)] {
         let found = only(text, verify);
-        assert_eq!(found.yield_source, Some(source));
+        assert_eq!(found.distribution.yield_source, Some(source));
         let error = found.error_estimate.as_ref().unwrap().yield_.unwrap();
-        let own = found.capability.unwrap();
+        let own = found.distribution.capability.unwrap();
         // Three errors, and a few roundings of numbers near 1.
         assert!(
             (own.yield_().unwrap() - exact).abs() <= 3.0 * error + 1e-14 && error < 1e-9,
             "{own:?} {exact} {error}"
         );
         relative(own.below.unwrap(), own.above.unwrap(), 1e-9);
-        assert!((found.pearson.unwrap().yield_().unwrap() - 0.74828).abs() < 5e-6);
+        assert!((found.evidence.pearson.unwrap().yield_().unwrap() - 0.74828).abs() < 5e-6);
     }
 }
 
@@ -54,8 +54,8 @@ fn a_worst_case_within_the_limits_is_a_proof() {
                 b = { nominal = 2, tolerance = 0.2, distribution = \"uniform\" }\n\
                 [characteristics]\ny = { formula = \"a + b\", lower = 2.69, upper = 3.31, target_yield = 0.999999999 }\n";
     let found = only(text, None);
-    assert_eq!((found.yield_source, found.yield_interval()), (Some(YieldSource::Proof), Some([1.0; 2])));
-    assert_eq!((found.capability.unwrap().rejected(), found.met()), (Some(0.0), Some(true)));
+    assert_eq!((found.distribution.yield_source, found.yield_interval()), (Some(YieldSource::Proof), Some([1.0; 2])));
+    assert_eq!((found.distribution.capability.unwrap().rejected(), found.met()), (Some(0.0), Some(true)));
 }
 
 /// A formula that is not a polynomial is sampled, with the surface distribution as control variate. With a kink the sample alone gives the
@@ -76,9 +76,9 @@ fn a_cheap_model_is_asked_itself() {
         ("max(a, b)", "upper = 2".to_owned(), normal(2.0).powi(2)),
     ] {
         let found = of(formula, &limits);
-        assert_eq!(found.yield_source, Some(YieldSource::Samples), "{formula}");
+        assert_eq!(found.distribution.yield_source, Some(YieldSource::Samples), "{formula}");
         let error = found.error_estimate.as_ref().unwrap().yield_.unwrap();
-        let own = found.capability.unwrap().yield_().unwrap();
+        let own = found.distribution.capability.unwrap().yield_().unwrap();
         assert!((own - exact).abs() <= 3.0 * error && error < 1e-3, "{formula}: {own} for {exact}, {error}");
     }
 }
@@ -89,8 +89,8 @@ fn moments_alone_leave_the_pearson_fit() {
     let text = "[dimensions]\na = { nominal = 10, moments = [0.01, 0, 3e-4, 0, 1.5e-5, 0, 1.05e-6] }\n\
                 b = { nominal = 2, tolerance = 0.2 }\n[characteristics]\ny = { formula = \"a + b\", upper = 12.3 }\n";
     let found = only(text, Some(0));
-    assert_eq!(found.yield_source, Some(YieldSource::Pearson));
-    assert_eq!(found.capability.unwrap().above, found.pearson.unwrap().above);
+    assert_eq!(found.distribution.yield_source, Some(YieldSource::Pearson));
+    assert_eq!(found.distribution.capability.unwrap().above, found.evidence.pearson.unwrap().above);
 }
 
 /// Characteristics without a common dimension are independent: the joint yield is the product of their yields.
@@ -100,7 +100,8 @@ fn the_joint_yield_of_independent_characteristics_is_their_product() {
                 [characteristics]\nx = { formula = \"a\", upper = 1 }\ny = { formula = \"2*b\", lower = -5, upper = 4 }\n";
     let study = study(text);
     let found = analyze(&study.problem, &study.options).unwrap();
-    let product: f64 = found.characteristics.iter().map(|one| one.capability.unwrap().yield_().unwrap()).product();
+    let product: f64 =
+        found.characteristics.iter().map(|one| one.distribution.capability.unwrap().yield_().unwrap()).product();
     let joint = found.joint.unwrap();
     assert!((joint.value - product).abs() <= 3.0 * joint.error && joint.error < 1e-2, "{joint:?} {product}");
     // A single characteristic has no joint yield.

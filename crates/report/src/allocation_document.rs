@@ -152,8 +152,11 @@ impl AllocationReport {
     /// Adds the required joint yield with the values before, after and sampled.
     fn joint_required(&self, section: &mut Section) {
         let Some(one) = &self.joint_requirement else { return };
-        let said =
-            Line::from(format!("joint yield {}: {} before, ", target_yield(one.requirement.amount()), found(&one.before)));
+        let said = Line::from(format!(
+            "joint yield {}: {} before, ",
+            target_yield(one.requirement.amount()),
+            found(&one.before)
+        ));
         let said = match &one.after {
             Some(after) => said.and(format!("{} after, ", found(after))).and(loud(after.verdict)),
             None => said.and(loud(one.before.verdict)),
@@ -287,7 +290,7 @@ impl AllocationReport {
             .shown("", |row| Cell::text(row.1))
             .shown("mean", move |row| scaled(row.2, row.2.mean()))
             .shown("sigma", move |row| scaled(row.2, row.2.sigma()))
-            .shown("Cpk", |row| Cell::known(row.2.capability.and_then(|of| of.cpk), index))
+            .shown("Cpk", |row| Cell::known(row.2.distribution.capability.and_then(|of| of.cpk), index))
             .shown("yield", |row| Cell::known(row.2.yield_(), |_| row.2.rejects().yield_text().unwrap_or_default()))
             .terminal(!self.requirements.is_empty(), "verdict", |row| {
                 let kept = self.requirements.iter().filter(|kept| kept.characteristic == row.2.name());

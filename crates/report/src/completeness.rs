@@ -7,7 +7,10 @@ use crate::*;
 use sensitol::allocation::{
     Allocated, Allocation, AllocationOptions, AllocationTask, Curve, Kept, Offer, Priced, allocate,
 };
-use sensitol::analysis::{CharacteristicAnalysis, Interaction, Sensitivity, analyze};
+use sensitol::analysis::{
+    CharacteristicAnalysis, ContributionFigures, DistributionFigures, Evidence, Interaction, LinearFigures,
+    MissingPoints, RangeFigures, Sensitivity, analyze,
+};
 use sensitol::assembly::Closure;
 use sensitol::compare::{CompareOptions, Comparison, Contender, NotRun, Ran, compare};
 use sensitol::method::Method;
@@ -51,15 +54,30 @@ fn run_of(json: &Value, run: &RunSummary) {
 fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
     // Keys of figures from sampling, resampling, search and fit are present here too, as null.
     complete!(json, one => CharacteristicAnalysis {
-        characteristic: "/name", nominal: "/nominal", moments: "/kurtosis", sampled: "/surrogate_sampling",
-        model_sampled: "/model_sampling", surface_law: "/surface_law", density: "", curved: "", yield_source: "/yield_source", pearson: "/pearson_fit", unfinished: "/unfinished", without_value: "/without_value",
-        error_estimate: "/error_estimate", residual: "/least_squares", law: "/distribution", capability: "/cpk", reject_intervals: "/ppm_above_interval",
-        normal: "/normal_fit", sampling: "/sampling_interval", worst_case: "/worst_case/linear",
-        extremes: "/worst_case/extremes", bounds: "/worst_case/bounds", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
-        mean_shift_rss: "/mean_shift_rss", six_sigma: "/six_sigma", sensitivities: "/sensitivities/1", interactions: "/interactions/0", interactions_remainder: "/interactions_remainder",
-        possible_interactions: "/possible_interactions", examined_interactions: "/examined_interactions", left_out_share: "/left_out_share", constant: "/constant",
-        verification: "/verification", indices: "/sobol", inspection: "/inspection", coverage: "/coverage", quantiles: "/quantiles",
+        characteristic: "/name", nominal: "/nominal", moments: "/kurtosis", error_estimate: "/error_estimate", distribution: "", range: "",
+        linear: "", sensitivities: "/sensitivities/1", contributions: "", evidence: "", missing: "", constant: "/constant",
     });
+    complete!(json, &one.distribution => DistributionFigures {
+        yield_source: "/yield_source", capability: "/cpk", reject_intervals: "/ppm_above_interval", quantiles: "/quantiles",
+        coverage: "/coverage", inspection: "/inspection",
+    });
+    complete!(json, &one.range => RangeFigures {
+        worst_case: "/worst_case/linear", curved: "", extremes: "/worst_case/extremes", bounds: "/worst_case/bounds",
+    });
+    complete!(json, &one.linear => LinearFigures {
+        middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss", mean_shift_rss: "/mean_shift_rss", six_sigma: "/six_sigma",
+    });
+    complete!(json, &one.contributions => ContributionFigures {
+        interactions: "/interactions/0", interactions_remainder: "/interactions_remainder",
+        possible_interactions: "/possible_interactions", examined_interactions: "/examined_interactions",
+        left_out_share: "/left_out_share", indices: "/sobol",
+    });
+    complete!(json, &one.evidence => Evidence {
+        sampled: "/surrogate_sampling", model_sampled: "/model_sampling", verification: "/verification", surface_law: "/surface_law",
+        density: "", residual: "/least_squares", law: "/distribution", pearson: "/pearson_fit", normal: "/normal_fit",
+        sampling: "/sampling_interval",
+    });
+    complete!(json, &one.missing => MissingPoints { unfinished: "/unfinished", without_value: "/without_value" });
     let sensitivity = json.pointer("/sensitivities/0").unwrap();
     complete!(sensitivity, &one.sensitivities[0] => Sensitivity {
         dimension: "/dimension", first: "/first", second: "/second", exact: "/exact", origin: "/origin", rounding: "/rounding", steps: "/steps",
@@ -67,7 +85,7 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
         first_order: "/first_order", total: "/total",
     });
     let interaction = json.pointer("/interactions/0").unwrap();
-    complete!(interaction, one.interactions.get(0).unwrap() => Interaction {
+    complete!(interaction, one.contributions.interactions.get(0).unwrap() => Interaction {
         dimensions: "/dimensions", mixed: "/mixed", missing: "/missing", exact: "/exact", origin: "/origin", rounding: "/rounding",
         share: "/share", mean_shift: "/mean_shift",
     });

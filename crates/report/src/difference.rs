@@ -342,7 +342,8 @@ fn compared(old: &Report, new: &Report) -> Vec<Compared> {
                     _ => None,
                 },
             };
-            let capability = |one: &CharacteristicAnalysis| one.capability.as_ref().and_then(|of: &Capability| of.cpk);
+            let capability =
+                |one: &CharacteristicAnalysis| one.distribution.capability.as_ref().and_then(|of: &Capability| of.cpk);
             let error = |place: fn(&sensitol::method::ErrorEstimate) -> Option<f64>| {
                 of(&move |one| one.error_estimate.as_ref().and_then(place))
             };

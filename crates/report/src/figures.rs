@@ -94,15 +94,15 @@ impl Figures for CharacteristicAnalysis {
     }
 
     fn yield_(&self) -> Option<f64> {
-        self.capability.as_ref().and_then(Capability::yield_)
+        self.distribution.capability.as_ref().and_then(Capability::yield_)
     }
 
     fn ppm_below(&self) -> Option<f64> {
-        self.capability.as_ref().and_then(Capability::ppm_below)
+        self.distribution.capability.as_ref().and_then(Capability::ppm_below)
     }
 
     fn ppm_above(&self) -> Option<f64> {
-        self.capability.as_ref().and_then(Capability::ppm_above)
+        self.distribution.capability.as_ref().and_then(Capability::ppm_above)
     }
 }
 
@@ -158,20 +158,21 @@ pub(crate) trait FittedFigures {
 
 impl FittedFigures for CharacteristicAnalysis {
     fn scale(&self) -> f64 {
-        self.sigma().filter(|&sigma| sigma > 0.0).or(self.rss).unwrap_or(0.0)
+        self.sigma().filter(|&sigma| sigma > 0.0).or(self.linear.rss).unwrap_or(0.0)
     }
 
     fn fitted(&self) -> Option<&Law> {
-        self.law.as_ref()?.as_ref().ok()
+        self.evidence.law.as_ref()?.as_ref().ok()
     }
 
     fn examined(&self) -> usize {
-        let failed = self.interactions.iter().filter(|pair| pair.missing == Some(Missing::Failed)).count();
-        self.examined_interactions + failed
+        let failed =
+            self.contributions.interactions.iter().filter(|pair| pair.missing == Some(Missing::Failed)).count();
+        self.contributions.examined_interactions + failed
     }
 
     fn screened(&self) -> impl Iterator<Item = Interaction<'_>> {
-        self.interactions.iter().filter(|pair| pair.origin == Some(DerivativeOrigin::Screened))
+        self.contributions.interactions.iter().filter(|pair| pair.origin == Some(DerivativeOrigin::Screened))
     }
 }
 

@@ -367,7 +367,7 @@ fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport>
 impl SweptPointReport {
     fn of(at: f64, analysis: Option<&CharacteristicAnalysis>) -> Self {
         let of = |figure: fn(&CharacteristicAnalysis) -> Option<f64>| analysis.and_then(figure);
-        let quantiles = analysis.and_then(|one| one.quantiles);
+        let quantiles = analysis.and_then(|one| one.distribution.quantiles);
         let values = quantiles.map_or([None; 7], |of| of.values.0);
         Self {
             at,
@@ -377,16 +377,16 @@ impl SweptPointReport {
             skewness: of(Figures::skewness),
             kurtosis: of(Figures::kurtosis),
             error_estimate: analysis.and_then(|one| one.error_estimate.clone()),
-            rss: of(|one| one.rss),
+            rss: of(|one| one.linear.rss),
             quantiles: Quantiles(values.map(|found| found.map(|of| of.value))),
             quantile_errors: Quantiles(values.map(|found| found.and_then(|of| of.error))),
             quantile_source: quantiles.map(|of| of.source),
             yield_: of(Figures::yield_),
             yield_interval: analysis.and_then(CharacteristicAnalysis::yield_interval),
-            yield_source: analysis.and_then(|one| one.yield_source),
+            yield_source: analysis.and_then(|one| one.distribution.yield_source),
             ppm_below: of(Figures::ppm_below),
             ppm_above: of(Figures::ppm_above),
-            reject_intervals: analysis.map_or([None; 2], |one| one.reject_intervals),
+            reject_intervals: analysis.map_or([None; 2], |one| one.distribution.reject_intervals),
             met: analysis.and_then(CharacteristicAnalysis::met),
             verdict: analysis.and_then(CharacteristicAnalysis::verdict),
             requirements: analysis.map_or(Vec::new(), CharacteristicAnalysis::requirements),

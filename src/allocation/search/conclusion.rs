@@ -157,7 +157,7 @@ impl Driver<'_> {
     fn has_true_slopes(&self, station: &LinearizationPoint, constraints: &[Constraint]) -> bool {
         // Slopes of a surface that the model refutes, and those of samples, prove nothing.
         let followed = |c: usize| {
-            let left = station.analysis.characteristics[c].verification.as_ref().and_then(|of| of.left);
+            let left = station.analysis.characteristics[c].evidence.verification.as_ref().and_then(|of| of.left);
             !station.responses.is_sampled(c) && left.is_none_or(|left| left <= TRUSTED)
         };
         constraints.iter().all(|one| {

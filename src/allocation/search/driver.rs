@@ -195,7 +195,7 @@ impl Driver<'_> {
     /// and the model is cheap.
     fn correct(&self, problem: &Problem, analysis: &Analysis, responses: &mut Responses) {
         let of = |(c, one): (usize, &CharacteristicAnalysis)| {
-            let refuted = one.verification.as_ref().is_some_and(|of| of.replaced);
+            let refuted = one.evidence.verification.as_ref().is_some_and(|of| of.replaced);
             let moments = self.task.requirements[c].is_some_and(|of| !form_of(&of).basis().is_by_band());
             (refuted && moments).then_some((c, one.moments?))
         };

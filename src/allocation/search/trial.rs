@@ -187,7 +187,7 @@ impl QualityLoss {
         let squares = self.k * (moments.sigma().powi(2) + (moments.mean() - self.target).powi(2));
         let scrapped = match self.scrap {
             0.0 => 0.0,
-            price => price * one.capability?.rejected()?,
+            price => price * one.distribution.capability?.rejected()?,
         };
         Some(squares + scrapped)
     }

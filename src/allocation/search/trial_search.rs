@@ -130,8 +130,11 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         }
         self.asked += 1;
         let trial = self.driver.trial(&self.base, at, offers)?;
-        let verified =
-            trial.analysis.characteristics.iter().filter_map(|one| Some(one.verification.as_ref()?.points as u64));
+        let verified = trial
+            .analysis
+            .characteristics
+            .iter()
+            .filter_map(|one| Some(one.evidence.verification.as_ref()?.points as u64));
         let points = trial.analysis.run.evaluations + verified.sum::<u64>();
         self.values += points * self.base.dimensions().len() as u64;
         self.driver.spent.points.fetch_add(points, Ordering::Relaxed);

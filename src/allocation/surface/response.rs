@@ -403,7 +403,7 @@ impl Responses {
     ) -> Option<[WorstCaseCorrection; 2]> {
         let nominal = found.nominal?;
         let proof = found.proof().filter(|proof| proof.proven).map(|proof| proof.bounds);
-        let [low, high] = proof.or(found.worst_case.filter(|_| found.is_proven_linear()))?;
+        let [low, high] = proof.or(found.range.worst_case.filter(|_| found.is_proven_linear()))?;
         let all = self.every_dimension();
         let of = |above: bool, truth: f64| {
             let (constant, coefficients) = self.worst_case(characteristic, &all, above)?;
@@ -549,7 +549,7 @@ impl Responses {
 
 /// True if the surface distribution gives the yield. A counted one has no slopes.
 pub(in crate::allocation) fn is_judged_by_law(found: &CharacteristicAnalysis) -> bool {
-    found.characteristic.limits().exist() && found.surface_law.is_some_and(|law| law.counted.is_none())
+    found.characteristic.limits().exist() && found.evidence.surface_law.is_some_and(|law| law.counted.is_none())
 }
 
 /// True if some of these dimensions share a zone, so that they do not reach the whole box of their bands.

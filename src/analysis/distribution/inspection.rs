@@ -20,7 +20,7 @@ pub(in crate::analysis) fn inspected(
 ) -> Option<InspectionRisks> {
     let inspection = one.characteristic.inspection()?;
     let limits = one.characteristic.limits();
-    let fit = one.law.as_ref().and_then(|law| law.as_ref().ok());
+    let fit = one.evidence.law.as_ref().and_then(|law| law.as_ref().ok());
     // The distribution of a surface that does not vary is a step: the closed form is more accurate than the integrals.
     let surface = surface.filter(|_| !matches!(fit, Some(Law::Point { .. })));
     match (surface, fit) {
@@ -43,7 +43,8 @@ pub(in crate::analysis) fn inspected(
             Some(told(one, inspection, guard, guard.map(|guard| (exact(guard), [Some(0.0); 2]))))
         }
         (None, Some(_))
-            if let Some(points) = points.filter(|_| one.surface_law.is_some_and(|law| law.refuted.is_some())) =>
+            if let Some(points) =
+                points.filter(|_| one.evidence.surface_law.is_some_and(|law| law.refuted.is_some())) =>
         {
             let (below, above) = (|x: f64| points.beyond(LawTail::Lower, x), |x: f64| points.beyond(LawTail::Upper, x));
             Some(by(one, inspection, (limits, kept), &Tails { below: &below, above: &above }, None))
@@ -58,8 +59,8 @@ pub(in crate::analysis) fn inspected(
 
 /// Numerical error of the surface distribution, if it is the only error.
 fn surface_error(one: &CharacteristicAnalysis) -> Option<f64> {
-    let proven = one.yield_source == Some(YieldSource::Proof);
-    one.surface_law.filter(|_| proven).map(|law| law.error())
+    let proven = one.distribution.yield_source == Some(YieldSource::Proof);
+    one.evidence.surface_law.filter(|_| proven).map(|law| law.error())
 }
 
 fn guard(inspection: Inspection, limits: SpecLimits, tails: &Tails<'_>) -> Option<f64> {
@@ -79,11 +80,11 @@ fn by(
     proven: Option<f64>,
 ) -> InspectionRisks {
     let (gauge, guard) = (inspection.gauge(), guard(inspection, limits, tails));
-    let sample = one.verification.as_ref().and_then(|of| of.sample.as_deref());
+    let sample = one.evidence.verification.as_ref().and_then(|of| of.sample.as_deref());
     let of = |guard: f64| {
         let mut risks = Risks::of(tails, limits, gauge, guard);
         // Proven yields bound the risk: no more bad parts are accepted than there are rejects.
-        if let Some(rejected) = one.capability.and_then(|of| of.rejected()).filter(|_| proven.is_some()) {
+        if let Some(rejected) = one.distribution.capability.and_then(|of| of.rejected()).filter(|_| proven.is_some()) {
             risks.false_accept = risks.false_accept.min(rejected);
         }
         let Some(sample) = sample else {
@@ -92,7 +93,7 @@ fn by(
         };
         let found = sample.shares(|x| inspected_point(x, kept.contains(x), kept, gauge, guard));
         // Points of the model take precedence over a count of the surface.
-        if one.surface_law.is_none_or(|law| law.refuted.is_some()) {
+        if one.evidence.surface_law.is_none_or(|law| law.refuted.is_some()) {
             (risks.false_accept, risks.false_reject) = (found[0].value, found[1].value);
         }
         let errors = [found[0].error_of(risks.false_accept), found[1].error_of(risks.false_reject)];
@@ -108,7 +109,7 @@ fn told(
     found: Option<(Risks, [Option<f64>; 2])>,
 ) -> InspectionRisks {
     let share = |value: f64, error: Option<f64>| Some(EstimatedShare { value: value.clamp(0.0, 1.0), error });
-    let yield_ = one.capability.and_then(|of| of.yield_());
+    let yield_ = one.distribution.capability.and_then(|of| of.yield_());
     let yield_error = match one.constant {
         true => Some(0.0),
         false => one.error_estimate.as_ref().and_then(|of| of.yield_),

@@ -60,7 +60,8 @@ impl Surface {
             if fitted.integrated.is_some() {
                 return Err(NoFit::Integrated);
             }
-            if one.model_sampled.is_some() || one.verification.as_ref().is_some_and(|of| of.replaced) {
+            if one.evidence.model_sampled.is_some() || one.evidence.verification.as_ref().is_some_and(|of| of.replaced)
+            {
                 return Err(NoFit::Sampled);
             }
             let known = |surrogate: &&Surrogate| surrogate.parts.iter().all(Option::is_some) && one.moments.is_some();

@@ -48,16 +48,16 @@ impl<'a> QuantileSelection<'a> {
         law: Option<&'a GuardedLaw>,
         measured: bool,
     ) -> Option<Self> {
-        let fit = one.law.as_ref().and_then(|law| law.as_ref().ok());
+        let fit = one.evidence.law.as_ref().and_then(|law| law.as_ref().ok());
         let pearson = match fit {
             Some(Law::Pearson(fit)) => Some(fit.as_ref()),
             _ => None,
         };
-        let verification = one.verification.as_ref();
+        let verification = one.evidence.verification.as_ref();
         let sampled = verification.filter(|of| of.kind == VerificationKind::Sample);
         let proven = verification.is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
         let computed = law.is_some_and(|law| law.shares.branch != Branch::Sampled);
-        let source = match (fit, &one.model_sampled, sampled, law, pearson) {
+        let source = match (fit, &one.evidence.model_sampled, sampled, law, pearson) {
             (Some(Law::Point { at }), ..) => QuantileSource::Constant(*at),
             (_, Some(sampled), ..) => QuantileSource::SampledModel(&sampled.quantiles, pearson),
             (_, _, Some(of), ..) if of.quantiles.iter().any(Option::is_some) => {
@@ -100,7 +100,7 @@ impl<'a> QuantileSelection<'a> {
 
     /// Quantiles at any probabilities, at most one half each. None at one that the source does not resolve.
     pub(in crate::analysis) fn at(&self, tails: &[(LawTail, f64)]) -> Vec<Option<EstimatedQuantile>> {
-        let fit = self.one.law.as_ref().and_then(|law| law.as_ref().ok());
+        let fit = self.one.evidence.law.as_ref().and_then(|law| law.as_ref().ok());
         match &self.source {
             QuantileSource::Constant(value) => {
                 vec![Some(EstimatedQuantile { value: *value, error: Some(0.0) }); tails.len()]

@@ -122,7 +122,7 @@ fn request<'a>(
     (c, one): (usize, &'a CharacteristicAnalysis),
 ) -> LawRequest<'a> {
     let seed = options.seed.unwrap_or(Options::SEED);
-    LawRequest { problem, outcome, c, seed, fit: fit(one), verification: one.verification.as_ref() }
+    LawRequest { problem, outcome, c, seed, fit: fit(one), verification: one.evidence.verification.as_ref() }
 }
 
 /// Chooses the source of the yield of every characteristic, and sets capability and error of the yield accordingly. Returns the surface
@@ -136,7 +136,7 @@ pub(in crate::analysis) fn settle(
 ) -> Vec<Option<SurfaceLaw>> {
     let mut laws: Vec<Option<SurfaceLaw>> = Vec::new();
     for ((c, one), found) in characteristics.iter_mut().enumerate().zip(found) {
-        one.pearson = one.capability;
+        one.evidence.pearson = one.distribution.capability;
         laws.push(None);
         if one.moments.is_none() {
             continue;
@@ -146,7 +146,7 @@ pub(in crate::analysis) fn settle(
         if let Some(probability) = options.coverage {
             let found = QuantileSelection::of(one, guarded.as_ref(), measured).map(|of| covered(&of, probability));
             // Quantiles that give no intervals refute the distribution: points of the surface replace it.
-            one.coverage = found.and_then(|found| {
+            one.distribution.coverage = found.and_then(|found| {
                 found.unwrap_or_else(|faulty| {
                     guarded = GuardedLaw::without(request(problem, outcome, options, (c, one)), &faulty);
                     let of = QuantileSelection::of(one, guarded.as_ref(), measured);
@@ -155,24 +155,24 @@ pub(in crate::analysis) fn settle(
             });
         }
         let limits = one.characteristic.limits();
-        one.quantiles = QuantileSelection::of(one, guarded.as_ref(), measured)
+        one.distribution.quantiles = QuantileSelection::of(one, guarded.as_ref(), measured)
             .map(|of| QuantileEstimates::new(of.source(), of.reported(), limits));
-        one.density = sampled_density(one, options).or(density);
-        one.surface_law = guarded.as_ref().map(|law| law.shares);
+        one.evidence.density = sampled_density(one, options).or(density);
+        one.evidence.surface_law = guarded.as_ref().map(|law| law.shares);
         let points = guarded.as_mut().and_then(|law| law.points.take());
         laws[c] = guarded.and_then(|law| law.law);
         let Some(found) = rejected(problem, outcome, c, one, laws[c].as_ref()) else { continue };
         // A side without rejects by proof needs no estimate.
         let proven = proven_sides(problem, outcome, c, one, &found);
         let found = found.excluding(proven).bounded();
-        one.reject_intervals = found.intervals;
-        one.yield_source = one.characteristic.limits().exist().then_some(found.source);
-        one.capability = capability(one, found.beyond);
+        one.distribution.reject_intervals = found.intervals;
+        one.distribution.yield_source = one.characteristic.limits().exist().then_some(found.source);
+        one.distribution.capability = capability(one, found.beyond);
         if let Some(estimate) = one.error_estimate.take() {
             one.error_estimate =
                 Some(ErrorEstimate { yield_: found.error.filter(|error| error.is_finite()), ..estimate });
         }
-        one.inspection = inspected(one, problem.kept_limits(c), laws[c].as_ref(), points.as_ref());
+        one.distribution.inspection = inspected(one, problem.kept_limits(c), laws[c].as_ref(), points.as_ref());
     }
     laws
 }
@@ -201,9 +201,10 @@ pub(in crate::analysis) fn joint(
     let (mut rejects, mut square) = (Vec::new(), 0.0);
     for &c in &limited {
         let one = &characteristics[c];
-        rejects.push(one.capability?.rejected()?);
-        let exact = one.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
-        square += match one.yield_source? {
+        rejects.push(one.distribution.capability?.rejected()?);
+        let exact =
+            one.evidence.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+        square += match one.distribution.yield_source? {
             // Limits outside of the proven range have no error. The same holds for an exact surface of measured inputs.
             YieldSource::Proof => one.error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0),
             YieldSource::SurfaceLaw if exact => one.error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0),
@@ -235,7 +236,7 @@ fn by_laws(
     limited: &[usize],
 ) -> Option<Verified> {
     let refuted = |one: &CharacteristicAnalysis| {
-        is_sampled(one) && !one.verification.as_ref().is_some_and(Verification::follows_surface)
+        is_sampled(one) && !one.evidence.verification.as_ref().is_some_and(Verification::follows_surface)
     };
     if limited.iter().any(|&c| refuted(&characteristics[c])) {
         return None;
@@ -245,7 +246,7 @@ fn by_laws(
     let found = joint_yield(&laws);
     let (mut value, mut error) = (found.value, found.error);
     for one in limited.iter().map(|&c| &characteristics[c]) {
-        let corrected = one.surface_law?.rejected()? - one.capability?.rejected()?;
+        let corrected = one.evidence.surface_law?.rejected()? - one.distribution.capability?.rejected()?;
         (value, error) = (value + corrected, libm::hypot(error, corrected));
     }
     Some(Verified { value, error })
@@ -277,11 +278,11 @@ pub(in crate::analysis) fn joint_sampling(
     value: f64,
 ) -> Option<Option<[f64; 2]>> {
     let limited = || characteristics.iter().filter(|one| one.characteristic.limits().exist());
-    limited().find(|one| one.sampling.is_some())?;
+    limited().find(|one| one.evidence.sampling.is_some())?;
     let (mut most, mut least) = (1.0 - value, 0.0f64);
     for one in limited() {
-        let Some(measured) = &one.sampling else { continue };
-        let rejected = one.capability.and_then(|of| of.rejected());
+        let Some(measured) = &one.evidence.sampling else { continue };
+        let rejected = one.distribution.capability.and_then(|of| of.rejected());
         let Some((rejected, [low, high])) = rejected.zip(measured.rejected) else { return Some(None) };
         most += (high - rejected).max(0.0);
         least = least.max(low);
@@ -297,15 +298,15 @@ pub(in crate::analysis) fn have_joint_yield(characteristics: &[CharacteristicAna
 /// True if the moments are those of a surface, or the model's in place of those of a surface that is trusted nevertheless.
 fn follows_from_a_surface(one: &CharacteristicAnalysis) -> bool {
     let replaced = |of: &Verification| of.replaced && !of.follows_surface();
-    one.model_sampled.is_none() && !one.verification.as_ref().is_some_and(replaced)
+    one.evidence.model_sampled.is_none() && !one.evidence.verification.as_ref().is_some_and(replaced)
 }
 
 fn is_sampled(one: &CharacteristicAnalysis) -> bool {
-    one.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample)
+    one.evidence.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample)
 }
 
 fn fit(one: &CharacteristicAnalysis) -> Option<&Law> {
-    one.law.as_ref()?.as_ref().ok()
+    one.evidence.law.as_ref()?.as_ref().ok()
 }
 
 /// Rejects from the best available source. Returns None if nothing is known.
@@ -324,15 +325,15 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
     let limits = one.characteristic.limits();
     let exactly = |beyond| Rejected::new(YieldSource::Proof, beyond, Some(0.0), [Some(0.0); 2]);
     if one.constant {
-        let own = one.pearson?;
+        let own = one.evidence.pearson?;
         return Some(exactly([own.below, own.above]));
     }
     let measured = !samples_of(problem, outcome, c).is_empty();
     if !measured && limits.exist() && kept_by_extremes(problem, outcome, c, one) == [true; 2] {
         return Some(exactly([limits.lower().map(|_| 0.0), limits.upper().map(|_| 0.0)]));
     }
-    let exact = one.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
-    let law = one.surface_law.as_ref().filter(|law| exact && law.branch != Branch::Sampled)?;
+    let exact = one.evidence.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+    let law = one.evidence.surface_law.as_ref().filter(|law| exact && law.branch != Branch::Sampled)?;
     let beyond = [law.below, law.above];
     let outside = beyond.iter().flatten().all(|figure| figure.proven);
     // A limit outside of the proven range stays outside with any rounding, because the range includes rounding errors.
@@ -370,8 +371,8 @@ fn kept_by_extremes(problem: &Problem, outcome: &Outcome, c: usize, one: &Charac
                 least >= lower - slack && most <= upper + slack
             })
     };
-    let all =
-        one.without_value == 0 && outcome.plan.varying().iter().filter(|&&d| outcome.plan.depends(c, d)).all(bounded);
+    let all = one.missing.without_value == 0
+        && outcome.plan.varying().iter().filter(|&&d| outcome.plan.depends(c, d)).all(bounded);
     let kept = problem.kept_limits(c);
     [0, 1].map(|side| all && !kept.broken(proof.bounds[side])[side])
 }
@@ -386,7 +387,7 @@ fn proven_sides(
     one: &CharacteristicAnalysis,
     found: &Rejected,
 ) -> [bool; 2] {
-    if one.constant || one.without_value > 0 || !samples_of(problem, outcome, c).is_empty() {
+    if one.constant || one.missing.without_value > 0 || !samples_of(problem, outcome, c).is_empty() {
         return [false; 2];
     }
     let known = kept_by_extremes(problem, outcome, c, one);
@@ -402,13 +403,13 @@ fn proven_sides(
 /// Rejects from points of the model, with the surface distribution as control variate if that lowers the error.
 fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
     let source = YieldSource::Samples;
-    if let Some(sampled) = &one.model_sampled {
+    if let Some(sampled) = &one.evidence.model_sampled {
         let (value, interval) = sampled.yield_?;
         let error = |side: usize| Some(one_error(sampled.beyond[side]?, sampled.intervals[side]?));
         let (error, errors) = (Some(one_error(value, interval)), [error(0), error(1)]);
         return Some(Rejected { source, beyond: sampled.beyond, error, errors, intervals: sampled.intervals });
     }
-    let verification = one.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample)?;
+    let verification = one.evidence.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample)?;
     let (own, point) = (verification.yield_?, verification.point);
     let interval = |share: f64, error: f64| weighted_interval(share, scatter(error, point), point);
     let plain = || Rejected {
@@ -419,7 +420,7 @@ fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
         intervals: verification.beyond.map(|of| of.map(|of| interval(of.value, of.error))),
     };
     // Counts of the surface are no control variate: the sample is as accurate.
-    let control = one.surface_law.as_ref().filter(|law| law.counted.is_none());
+    let control = one.evidence.surface_law.as_ref().filter(|law| law.counted.is_none());
     let (Some([within, differences @ ..]), Some(law)) = (verification.difference, control) else {
         return Some(plain());
     };
@@ -451,9 +452,9 @@ fn value(of: Option<Verified>) -> Option<f64> {
 
 /// Rejects from the surface distribution, with the errors of check points, or of moments and tails without them.
 fn surface(one: &CharacteristicAnalysis, whole: Option<&SurfaceLaw>) -> Option<Rejected> {
-    let law = one.surface_law.as_ref().filter(|_| one.characteristic.limits().exist())?;
+    let law = one.evidence.surface_law.as_ref().filter(|_| one.characteristic.limits().exist())?;
     let beyond = [law.below, law.above];
-    let checked = one.verification.as_ref().filter(|of| of.kind == VerificationKind::Checks);
+    let checked = one.evidence.verification.as_ref().filter(|of| of.kind == VerificationKind::Checks);
     let (surface, sides) = match checked {
         Some(of) => (of.yield_.map(|of| of.error), of.beyond.map(|of| of.map(|of| of.error))),
         None => {
@@ -471,7 +472,7 @@ fn surface(one: &CharacteristicAnalysis, whole: Option<&SurfaceLaw>) -> Option<R
 
 /// Rejects from the Pearson fit, if nothing better is known.
 fn pearson(one: &CharacteristicAnalysis) -> Option<Rejected> {
-    let own = one.pearson?;
+    let own = one.evidence.pearson?;
     let error = one.error_estimate.as_ref().and_then(|of| of.yield_);
     Some(Rejected::new(YieldSource::Pearson, [own.below, own.above], error, by_moments(one)))
 }
@@ -480,7 +481,7 @@ fn pearson(one: &CharacteristicAnalysis) -> Option<Rejected> {
 fn capability(one: &CharacteristicAnalysis, [below, above]: [Option<f64>; 2]) -> Option<Capability> {
     let moments = one.moments?;
     let limits = one.characteristic.limits();
-    let [cp_percentile, cpk_percentile] = one.quantiles.map_or([None; 2], |of| of.indices(limits));
+    let [cp_percentile, cpk_percentile] = one.distribution.quantiles.map_or([None; 2], |of| of.indices(limits));
     let base = Capability::of_moments(moments.mean(), moments.sigma(), limits);
     Some(Capability { below, above, cp_percentile, cpk_percentile, ..base })
 }
@@ -489,6 +490,6 @@ fn capability(one: &CharacteristicAnalysis, [below, above]: [Option<f64>; 2]) ->
 /// requested.
 fn sampled_density(one: &CharacteristicAnalysis, options: &Options) -> Option<Vec<[f64; 3]>> {
     let verification =
-        one.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample && options.densities)?;
+        one.evidence.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample && options.densities)?;
     verification.sample.as_deref().filter(|_| !verification.follows_surface())?.density()
 }

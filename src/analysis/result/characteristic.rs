@@ -1,33 +1,31 @@
 //! Results of one characteristic.
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
-use crate::analysis::result::coverage_intervals::CoverageIntervals;
+use crate::analysis::result::contribution_figures::ContributionFigures;
+use crate::analysis::result::distribution_figures::DistributionFigures;
+use crate::analysis::result::evidence::Evidence;
 use crate::analysis::result::interaction_listing::{dimensions_of, mixed_of, pairs_of, share_of};
-use crate::analysis::result::interaction_remainder::Remainder;
 use crate::analysis::result::linear::Linear;
-use crate::analysis::result::sobol_indices::SobolIndices;
+use crate::analysis::result::range_figures::{LinearFigures, RangeFigures};
 use crate::analysis::result::variance_share::Shares;
 use crate::analysis::result::yield_error::of_yield;
-use crate::analysis::{
-    InteractionList, QuantileEstimates, SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind,
-    YieldSource,
-};
-use crate::extremes::{Extremes, ExtremesProof};
-use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
+use crate::analysis::{InteractionList, VerificationKind, YieldSource};
+use crate::extremes::ExtremesProof;
+use crate::method::{ErrorEstimate, Order, Outcome, estimate};
 use crate::problem::Problem;
 use crate::verification::Verified;
-use sensitol_numeric::capability::{Capability, CapabilityShape, EstimatedShare, InspectionRisks, Law};
+use sensitol_numeric::capability::{Capability, EstimatedShare, Law};
 use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
-use sensitol_numeric::json_form::{Four, RejectIntervals, through};
-use sensitol_numeric::moments::{Moments, Sampled};
-use sensitol_numeric::pearson::PearsonError;
+use sensitol_numeric::json_form::{Four, through};
+use sensitol_numeric::moments::Moments;
 use sensitol_numeric::power::{Rescale, Rescaling, Wide, rescale};
 use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::sampling::SamplingInterval;
 use sensitol_numeric::surrogate::DerivativeOrigin;
 use sensitol_numeric::verdict::{self, Judged, Verdict};
 
-/// Moments, sensitivities and contributions of one characteristic. Unknown values are None.
+/// Figures of one characteristic, with their evidence. Unknown values are None.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
@@ -41,116 +39,40 @@ pub struct CharacteristicAnalysis {
     #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "Four<Option<f64>>"))]
     pub moments: Option<Moments>,
-    /// Standard errors of the moments from sampling the surrogate of correlated inputs. None if the moments are exact.
-    #[serde(rename = "surrogate_sampling")]
-    pub sampled: Option<Sampled>,
-    /// Points of the model from which the moments follow, in place of a surrogate that was not trusted.
-    #[serde(rename = "model_sampling")]
-    pub model_sampled: Option<SampledModel>,
-    /// Verification of these results by the model itself. None if they were not verified.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(with = "Option<crate::analysis::result::verification::VerificationShape>")
-    )]
-    pub verification: Option<Verification>,
-    /// Results of the surface distribution. None if the moments follow from no surface.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(with = "Option<crate::analysis::distribution::surface_law::SurfaceLawShape>")
-    )]
-    pub surface_law: Option<SurfaceShares>,
-    /// Density of the surface distribution as `[y, density, error]`, for drawing. None unless [requested](crate::Options::densities), and
-    /// if the distribution has none.
+    /// Estimated errors of these results. None if there are no moments.
+    pub error_estimate: Option<ErrorEstimate>,
+    /// Yield, quantiles, and what follows from them.
+    #[serde(flatten)]
+    pub distribution: DistributionFigures,
+    /// Ranges that no assembly leaves.
     #[serde(skip)]
-    pub density: Option<Vec<[f64; 3]>>,
-    /// Source of the yield. None if there is no yield.
-    pub yield_source: Option<YieldSource>,
+    pub range: RangeFigures,
+    /// Results of slopes and tolerance bands alone.
+    #[serde(flatten)]
+    pub linear: LinearFigures,
+    /// Sensitivities to every dimension of the problem, in order.
+    pub sensitivities: Vec<Sensitivity>,
+    /// Interactions and indices of the variance.
+    #[serde(flatten)]
+    pub contributions: ContributionFigures,
+    /// Sources from which the figures follow, or that are shown beside them.
+    #[serde(flatten)]
+    pub evidence: Evidence,
+    /// Points without a value.
+    #[serde(flatten)]
+    pub missing: MissingPoints,
+    /// True if the characteristic depends on nothing that varies, so that it has a single value.
+    pub constant: bool,
+}
+
+/// Points that have no value of a characteristic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MissingPoints {
     /// True if the run was stopped before all planned points were evaluated. There is no verdict then.
     pub unfinished: bool,
     /// Evaluated points without a value of the characteristic.
     pub without_value: usize,
-    /// Estimated errors of these results. None if there are no moments.
-    pub error_estimate: Option<ErrorEstimate>,
-    /// Residual of a fitted surface at the values that it was fitted to. None if nothing was fitted.
-    #[serde(rename = "least_squares")]
-    pub residual: Option<Residual>,
-    /// Distribution of the Pearson system with these moments, or the reason why there is none.
-    #[serde(rename = "distribution", serialize_with = "fitted")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<Law>"))]
-    pub law: Option<Result<Law, PearsonError>>,
-    /// Capability from the best available source ([`yield_source`](Self::yield_source)). Indices by quantiles come from
-    /// [`quantiles`](Self::quantiles).
-    #[serde(flatten, serialize_with = "through::<CapabilityShape, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "CapabilityShape"))]
-    pub capability: Option<Capability>,
-    /// 95 % intervals of the shares below and above the limits, each side separately: 0 to 0 if a proof excludes a side. None if
-    /// that limit does not exist, and if it is unknown.
-    #[serde(flatten, serialize_with = "through::<RejectIntervals, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "RejectIntervals"))]
-    pub reject_intervals: [Option<[f64; 2]>; 2],
-    /// Capability by the Pearson fit.
-    #[serde(rename = "pearson_fit")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
-    pub pearson: Option<Capability>,
-    /// Capability by the normal distribution with the same mean and sigma.
-    #[serde(rename = "normal_fit")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
-    pub normal: Option<Capability>,
-    /// Quantiles with their errors. None if nothing is known of the distribution.
-    pub quantiles: Option<QuantileEstimates>,
-    /// Intervals that hold the requested share of assemblies. None if none was requested.
-    pub coverage: Option<CoverageIntervals>,
-    /// Risks of the inspection. None if there is no gauge.
-    pub inspection: Option<InspectionRisks>,
-    /// Uncertainty of the results because measured dimensions are known by samples. None if there are no measured dimensions.
-    #[serde(rename = "sampling_interval")]
-    pub sampling: Option<SamplingInterval>,
-    /// Interval that no assembly of a linear model leaves: around the nominal, with every dimension at the unfavourable end of its band,
-    /// and a point of a circular zone ([`Dimension::within_zone`](crate::Dimension::within_zone)) at its edge.
-    #[serde(skip)]
-    pub worst_case: Option<[f64; 2]>,
-    /// Greatest addition of curvatures and interactions to the worst case, by the surface. None if a curvature is missing.
-    #[serde(skip)]
-    pub curved: Option<f64>,
-    /// Least and greatest value in the box of the tolerance bands, if they were searched and found.
-    #[serde(skip)]
-    pub extremes: Option<Extremes>,
-    /// Interval that no assembly leaves, by interval arithmetic. Only for formulas that are verified, if no extremes were searched.
-    #[serde(skip)]
-    pub bounds: Option<ExtremesProof>,
-    /// Value of a linear model with every dimension in the middle of its band: the middle of the worst case, of the RSS and of the two
-    /// inflations of it. It is the nominal value if all bands are symmetric.
-    pub middle: Option<f64>,
-    /// `sqrt(t'R t)` with `t` = slope x half-width (three sigma if a dimension has no band) and the correlation `R`. Without correlation it
-    /// is the root of the sum of squares.
-    pub rss: Option<f64>,
-    /// 1.5 times the RSS (Bender 1962, 1968), or by the factors of the study.
-    pub inflated_rss: Option<f64>,
-    /// RSS with means that are all shifted in the unfavourable direction by half of their half-widths, 1.5 sigma of 3: `0.5 sum of |slope|
-    /// x half-width + 0.5 rss` (Greenwood and Chase 1987 with m = 0.5).
-    pub mean_shift_rss: Option<f64>,
-    /// `sqrt(sum of (slope x sigma/(1 - k))^2)` with the sigma of a lot and the shift `k` of its mean in half-widths, from `cpk`, `drift`
-    /// or `shift` (Harry and Stewart 1988). It is a sigma, not an interval. None if every mean is in the middle of its band, or one is at
-    /// an end.
-    pub six_sigma: Option<f64>,
-    /// Sensitivities to every dimension of the problem, in order.
-    pub sensitivities: Vec<Sensitivity>,
-    /// Examined interactions, strongest first.
-    #[cfg_attr(feature = "schema", schemars(with = "Vec<crate::analysis::Interaction<'_>>"))]
-    pub interactions: InteractionList,
-    /// Sum of the interactions that are not listed one by one. None if all are listed.
-    pub interactions_remainder: Option<Remainder>,
-    /// Number of possible interactions.
-    pub possible_interactions: usize,
-    /// Number of interactions that were examined, or are known from the formula.
-    pub examined_interactions: usize,
-    /// Share of the variance that no contribution explains. None if it is unknown.
-    pub left_out_share: Option<f64>,
-    /// Source of the Sobol' indices of the [`sensitivities`](Self::sensitivities). None if the characteristic does not vary.
-    #[serde(rename = "sobol")]
-    pub indices: Option<SobolIndices>,
-    /// True if the characteristic depends on nothing that varies, so that it has a single value.
-    pub constant: bool,
 }
 
 /// Effect of one dimension on a characteristic.
@@ -187,12 +109,8 @@ pub struct Sensitivity {
 }
 
 rescale!(CharacteristicAnalysis {
-    nominal, moments, sampled, model_sampled, verification, surface_law, error_estimate, residual, law, quantiles, coverage, inspection, sampling,
-    worst_case, curved, extremes, bounds, middle, rss, inflated_rss, mean_shift_rss, six_sigma, sensitivities, interactions,
-} without {
-    characteristic, yield_source, unfinished, without_value, capability, pearson, normal, reject_intervals, interactions_remainder, possible_interactions, examined_interactions,
-    left_out_share, indices, constant, density,
-});
+    nominal, moments, error_estimate, distribution, range, linear, sensitivities, contributions, evidence,
+} without { characteristic, missing, constant });
 
 impl Rescale for Sensitivity {
     fn rescale(&mut self, by: &mut Rescaling) {
@@ -201,11 +119,6 @@ impl Rescale for Sensitivity {
         self.rounding.iter_mut().for_each(|[first, _]| first.rescale(by));
         self.mean_shift.rescale(by);
     }
-}
-
-/// Serializes the distribution that has the moments; null if there is none.
-fn fitted<S: Serializer>(law: &Option<Result<Law, PearsonError>>, serializer: S) -> Result<S::Ok, S::Error> {
-    law.as_ref().and_then(|law| law.as_ref().ok()).serialize(serializer)
 }
 
 impl CharacteristicAnalysis {
@@ -217,31 +130,35 @@ impl CharacteristicAnalysis {
 
     /// Bounds of the worst case by interval arithmetic: those of the search for extremes if there was one, else `bounds`.
     pub fn proof(&self) -> Option<&ExtremesProof> {
-        self.extremes.as_ref().map_or(self.bounds.as_ref(), |found| found.proof.as_ref())
+        self.range.extremes.as_ref().map_or(self.range.bounds.as_ref(), |found| found.proof.as_ref())
     }
 
     /// Interval of the yield: the estimate and two of its errors, with the uncertainty of measured samples. It extends down to 0 if there
     /// are assemblies without a value that were not counted. Returns None if an error is unknown.
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
-        let value = self.capability?.yield_()?;
+        let value = self.distribution.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
         let around = verdict::about(value, error)?;
-        let around = match &self.sampling {
+        let around = match &self.evidence.sampling {
             Some(measured) => {
                 measured.rejected.map(|[low, high]| verdict::joined(value, around, [1.0 - high, 1.0 - low]))?
             }
             None => around,
         };
         // Samples give the share of assemblies without a value, and check points a bound of it.
-        let counted =
-            self.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample).and_then(|of| of.valid);
-        let located = self.verification.as_ref().and_then(|of| of.lost_share).filter(|lost| *lost > 0.0);
-        let lost = match &self.model_sampled {
+        let counted = self
+            .evidence
+            .verification
+            .as_ref()
+            .filter(|of| of.kind == VerificationKind::Sample)
+            .and_then(|of| of.valid);
+        let located = self.evidence.verification.as_ref().and_then(|of| of.lost_share).filter(|lost| *lost > 0.0);
+        let lost = match &self.evidence.model_sampled {
             _ if let Some(valid) = counted => Some(match valid.value < 1.0 {
                 true => (1.0 - valid.value + verdict::ERRORS * valid.error).min(1.0),
                 false => 0.0,
             }),
-            _ if self.without_value == 0 => Some(0.0),
+            _ if self.missing.without_value == 0 => Some(0.0),
             Some(sampled) => Some(sampled.failed as f64 / (sampled.failed + sampled.samples) as f64),
             // Check points bound the share by the places at which the model has no value.
             None => located,
@@ -265,15 +182,16 @@ impl CharacteristicAnalysis {
         // No interval if the uncertainty of measured samples is unknown.
         let measured =
             |value: Option<f64>, own: Option<[f64; 2]>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| match &self
+                .evidence
                 .sampling
             {
                 Some(sampling) => Some(verdict::joined(value?, own?, of(sampling)?)),
                 None => own,
             };
         let (value, interval) = match requirement {
-            Requirement::Yield(_) => (self.capability.and_then(|of| of.yield_()), self.yield_interval()),
+            Requirement::Yield(_) => (self.distribution.capability.and_then(|of| of.yield_()), self.yield_interval()),
             Requirement::Cpk(_) => {
-                let value = self.capability.and_then(|of| of.cpk);
+                let value = self.distribution.capability.and_then(|of| of.cpk);
                 let own = self.moments.and_then(|of| verdict::of_cpk((of.mean(), mean), (of.sigma(), sigma), limits));
                 (value, measured(value, own, |of| of.cpk))
             }
@@ -283,13 +201,13 @@ impl CharacteristicAnalysis {
                 (value, measured(value, own, |of| of.sigma).map(|[low, high]| [low.max(0.0), high]))
             }
             Requirement::Rss => {
-                part(self.middle.zip(self.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2])))
+                part(self.linear.middle.zip(self.linear.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2])))
             }
             Requirement::WorstCase => {
                 self.worst_case_taken().map_or((None, None), |(value, within)| (Some(value), within))
             }
         };
-        Judged::of(requirement, value, interval).unless(self.unfinished)
+        Judged::of(requirement, value, interval).unless(self.missing.unfinished)
     }
 
     /// Part of the distance to the limits that the worst case uses, and its interval.
@@ -297,7 +215,7 @@ impl CharacteristicAnalysis {
     /// The interval lies between values that exist and the bounds of interval arithmetic, if the formula has bounds. It follows from the
     /// slopes if the function is proven to be linear, and otherwise from the surface.
     fn worst_case_taken(&self) -> Option<(f64, Option<[f64; 2]>)> {
-        let (nominal, linear) = self.nominal.zip(self.worst_case)?;
+        let (nominal, linear) = self.nominal.zip(self.range.worst_case)?;
         let part = |[low, high]: [f64; 2], more: f64| {
             let reach = [nominal - low, high - nominal].map(|reach| (reach + more).max(0.0));
             taken(self.characteristic.limits(), nominal, reach)
@@ -315,13 +233,13 @@ impl CharacteristicAnalysis {
         if self.is_proven_linear() {
             return Some((by_slopes, Some([by_slopes; 2])));
         }
-        let found = self.extremes.as_ref().and_then(|found| part([found.least.value, found.greatest.value], 0.0));
+        let found = self.range.extremes.as_ref().and_then(|found| part([found.least.value, found.greatest.value], 0.0));
         if let Some(proof) = self.proof() {
             let most = part(proof.bounds, 0.0)?;
             let least = found.unwrap_or(0.0).min(most);
             return Some((found.unwrap_or(by_slopes), Some([least, most])));
         }
-        let around = self.curved.and_then(|curved| Some([part(linear, -curved)?, part(linear, curved)?]));
+        let around = self.range.curved.and_then(|curved| Some([part(linear, -curved)?, part(linear, curved)?]));
         Some(match found {
             // A search without a proof shows only values that are reached.
             Some(found) => (found, around.map(|[_, most]| [found, found.max(most)])),
@@ -331,7 +249,7 @@ impl CharacteristicAnalysis {
 
     /// True if the formula's own degree proves that it is linear: the slopes are exact everywhere.
     pub fn is_proven_linear(&self) -> bool {
-        let kind = self.verification.as_ref().map(|of| of.kind);
+        let kind = self.evidence.verification.as_ref().map(|of| of.kind);
         matches!(kind, Some(VerificationKind::Exact { degree: 0 | 1 }))
     }
 
@@ -384,47 +302,52 @@ impl CharacteristicAnalysis {
         let middle = fitted.nominal.zip(linear).map(|(nominal, linear)| nominal + linear.middle);
         let left_out_share = left_out_share(outcome, c, shares.as_ref(), &sensitivities);
         let one = Self {
+            characteristic: characteristic.clone(),
             nominal: fitted.nominal,
             moments,
-            sampled,
-            residual: fitted.residual,
-            capability: law.as_ref().and_then(|law| capability(law.as_ref().ok()?)),
-            normal,
-            reject_intervals: [None; 2],
-            law,
-            sampling: None,
-            quantiles: None,
-            coverage: None,
-            inspection: None,
-            characteristic,
-            worst_case: middle
-                .zip(linear)
-                .map(|(middle, linear)| [middle - linear.worst_case, middle + linear.worst_case]),
-            curved: curved(problem, outcome, c),
-            middle,
-            rss: linear.map(|linear| linear.rss),
-            inflated_rss: linear.map(|linear| linear.inflated_rss),
-            mean_shift_rss: linear.map(|linear| linear.mean_shift_rss),
-            six_sigma: linear.and_then(|linear| linear.six_sigma),
-            extremes: None,
-            bounds: None,
-            sensitivities,
-            interactions: InteractionList::default(),
-            interactions_remainder: None,
-            possible_interactions: plan.pairs_of(c),
-            examined_interactions: fitted.known_pairs,
-            left_out_share,
-            indices: None,
             error_estimate,
-            model_sampled: None,
-            verification: None,
-            surface_law: None,
-            density: None,
-            yield_source: None,
-            pearson: None,
-            unfinished: false,
+            distribution: DistributionFigures::by(law.as_ref().and_then(|law| capability(law.as_ref().ok()?))),
+            range: RangeFigures {
+                worst_case: middle
+                    .zip(linear)
+                    .map(|(middle, linear)| [middle - linear.worst_case, middle + linear.worst_case]),
+                curved: curved(problem, outcome, c),
+                extremes: None,
+                bounds: None,
+            },
+            linear: LinearFigures {
+                middle,
+                rss: linear.map(|linear| linear.rss),
+                inflated_rss: linear.map(|linear| linear.inflated_rss),
+                mean_shift_rss: linear.map(|linear| linear.mean_shift_rss),
+                six_sigma: linear.and_then(|linear| linear.six_sigma),
+            },
+            sensitivities,
+            contributions: ContributionFigures {
+                interactions: InteractionList::default(),
+                interactions_remainder: None,
+                possible_interactions: plan.pairs_of(c),
+                examined_interactions: fitted.known_pairs,
+                left_out_share,
+                indices: None,
+            },
+            evidence: Evidence {
+                sampled,
+                model_sampled: None,
+                verification: None,
+                surface_law: None,
+                density: None,
+                residual: fitted.residual,
+                law,
+                pearson: None,
+                normal,
+                sampling: None,
+            },
+            missing: MissingPoints {
+                unfinished: false,
+                without_value: outcome.evaluated.known.errors().filter(|&(_, of, _)| of == c).count(),
+            },
             constant: plan.varying().iter().all(|&d| !plan.depends(c, d)),
-            without_value: outcome.evaluated.known.errors().filter(|&(_, of, _)| of == c).count(),
         };
         (one, shares)
     }

@@ -48,7 +48,7 @@ pub enum Missing {
 /// let dimensions = [Dimension::normal("width", 20.0, 0.3)?, Dimension::normal("height", 10.0, 0.3)?];
 /// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
 /// let found = analyze(&area, &Method::Full.into())?;
-/// let strongest = found.characteristics[0].interactions.get(0).unwrap();
+/// let strongest = found.characteristics[0].contributions.interactions.get(0).unwrap();
 /// assert_eq!(strongest.dimensions, ["width", "height"]);
 /// assert!((strongest.mixed.unwrap() - 1.0).abs() < 1e-9);
 /// # Ok::<(), sensitol::Error>(())

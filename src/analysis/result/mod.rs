@@ -1,7 +1,10 @@
 //! Results of an analysis: figures of a characteristic, sensitivities, interactions, and their written form.
 
 pub(in crate::analysis) mod characteristic;
+pub(in crate::analysis) mod contribution_figures;
 pub(in crate::analysis) mod coverage_intervals;
+pub(in crate::analysis) mod distribution_figures;
+pub(in crate::analysis) mod evidence;
 pub(in crate::analysis) mod figure_basis;
 pub(in crate::analysis) mod interaction;
 pub(in crate::analysis) mod interaction_listing;
@@ -10,6 +13,7 @@ pub(in crate::analysis) mod json;
 pub(in crate::analysis) mod linear;
 pub(in crate::analysis) mod points_to_decide;
 pub(in crate::analysis) mod quantile_estimates;
+pub(in crate::analysis) mod range_figures;
 pub(in crate::analysis) mod sampled_model;
 pub(in crate::analysis) mod serialisation;
 pub(in crate::analysis) mod sobol_indices;

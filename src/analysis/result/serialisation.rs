@@ -94,10 +94,10 @@ fn coordinates<S: Serializer>(point: &[Coordinate], serializer: S) -> Result<S::
 
 impl<'r> WorstCase<'r> {
     fn of(one: &'r CharacteristicAnalysis) -> Self {
-        let found = one.extremes.as_ref();
+        let found = one.range.extremes.as_ref();
         let proof = one.proof();
         Self {
-            linear: one.worst_case,
+            linear: one.range.worst_case,
             extremes: found.map(|found| [found.least.value, found.greatest.value]),
             proven: found.map(Extremes::proven),
             at: found.map(|found| ExtremesAt { lower: &found.least.at, upper: &found.greatest.at }),

@@ -172,7 +172,7 @@ pub(in crate::analysis) fn resampled_intervals(
         let estimate = {
             let moments = analysis.moments.expect("a target has moments");
             // From the Pearson fit, like the figures of the resamples.
-            figures(&moments, analysis.pearson.as_ref(), target.limits)
+            figures(&moments, analysis.evidence.pearson.as_ref(), target.limits)
         };
         let interval = |figure: usize| {
             let mut values: Vec<f64> = resampled.iter().map(|of| of[t][figure]).collect();

@@ -45,9 +45,10 @@ pub(in crate::analysis) fn add_sampling_intervals(
                 .collect(),
             ..by_resamples(resampled)
         };
-        let sides = one.capability.map_or([None; 2], |of| [of.below, of.above]);
-        one.reject_intervals = sides_with_samples(sides, one.reject_intervals, interval.rejected);
-        one.sampling = Some(interval);
+        let sides = one.distribution.capability.map_or([None; 2], |of| [of.below, of.above]);
+        one.distribution.reject_intervals =
+            sides_with_samples(sides, one.distribution.reject_intervals, interval.rejected);
+        one.evidence.sampling = Some(interval);
     }
     drawn
 }
@@ -68,8 +69,8 @@ fn rejected(
     resampled: Option<&ResampledIntervals>,
 ) -> Option<[f64; 2]> {
     let rejected = |of: Option<Capability>| of.and_then(|of| of.rejected());
-    let reported = rejected(one.capability)?.clamp(0.0, 1.0);
-    let distance = 3.0 * one.capability?.cpk.unwrap_or(0.0);
+    let reported = rejected(one.distribution.capability)?.clamp(0.0, 1.0);
+    let distance = 3.0 * one.distribution.capability?.cpk.unwrap_or(0.0);
     let inputs = samples.iter().map(|sample| sample.with_share(variance_share(one, sample))).collect();
     let counted = MeasuredBasis { inputs, alone, distance }.interval(reported);
     if alone {
@@ -77,7 +78,7 @@ fn rejected(
     }
     let of_fit = resampled.and_then(|found| found.intervals[4]);
     // Ends of the interval of the fit, and the same ends scaled by the ratio of the reported reject rate to that of the fit.
-    let by = rejected(one.pearson).map(|fit| reported / fit).filter(|by| by.is_finite() && *by > 0.0);
+    let by = rejected(one.evidence.pearson).map(|fit| reported / fit).filter(|by| by.is_finite() && *by > 0.0);
     let in_proportion = of_fit.zip(by).map(|(ends, by)| ends.map(|end| by * end));
     let ends = of_fit.into_iter().chain(in_proportion).flatten();
     Some(share(ends.fold(counted, including)))
@@ -85,7 +86,7 @@ fn rejected(
 
 /// Share of the variance of all dimensions of a sample together, with all interactions. Returns 1 if it is unknown.
 fn variance_share(one: &CharacteristicAnalysis, sample: &MeasuredSample) -> f64 {
-    if let Some(of_model) = one.verification.as_ref().and_then(|of| of.shares.as_ref()) {
+    if let Some(of_model) = one.evidence.verification.as_ref().and_then(|of| of.shares.as_ref()) {
         let name = |d: usize| one.sensitivities[d].dimension.as_str();
         let own = of_model.iter().filter(|of| sample.dimensions.iter().any(|&d| name(d) == of.dimension));
         return own.map(|of| of.total.value).sum::<f64>().clamp(0.0, 1.0);

@@ -246,20 +246,20 @@ fn take(one: &mut CharacteristicAnalysis, CrossFitFigures { moments, sampled }: 
     let limits = one.characteristic.limits();
     let capability = |law: &Law| Capability::of(law, moments.mean(), moments.sigma(), limits);
     let law = Law::fit(&moments);
-    one.capability = law.as_ref().ok().map(capability);
-    one.normal = Law::normal(&moments).ok().map(|law| capability(&law));
+    one.distribution.capability = law.as_ref().ok().map(capability);
+    one.evidence.normal = Law::normal(&moments).ok().map(|law| capability(&law));
     let sources = vec![ErrorSource::Sampled { points: sampled.samples }];
     let [mean, sigma, skewness, kurtosis] = sampled.standard_errors;
     let estimate = ErrorEstimate { mean, sigma, skewness, kurtosis, yield_: None, sources };
     // Error of the fit of four moments: its distance from the sample's yield, and the error of that yield.
-    let of_fit = one.capability.and_then(|capability| capability.yield_()).zip(sampled.yield_);
+    let of_fit = one.distribution.capability.and_then(|capability| capability.yield_()).zip(sampled.yield_);
     let off = of_fit.map(|(fit, (value, interval))| (fit - value).abs() + one_error(value, interval));
     let of_moments = of_yield(&estimate, &moments, limits);
     one.error_estimate =
         Some(ErrorEstimate { yield_: of_moments.map(|error| error.max(off.unwrap_or(0.0))), ..estimate });
-    one.law = Some(law);
+    one.evidence.law = Some(law);
     one.moments = Some(moments);
-    one.sampled = None;
-    one.without_value += sampled.failed as usize;
-    one.model_sampled = Some(sampled);
+    one.evidence.sampled = None;
+    one.missing.without_value += sampled.failed as usize;
+    one.evidence.model_sampled = Some(sampled);
 }

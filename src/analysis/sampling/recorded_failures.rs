@@ -14,7 +14,7 @@ pub(in crate::analysis) fn add(problem: &Problem, characteristics: &mut [Charact
     for (one, &output) in characteristics.iter_mut().zip(problem.outputs()) {
         let own: Vec<&RecordedFailure> = recorded.iter().filter(|failure| failure.output == output).collect();
         let Some(first) = own.first() else { continue };
-        one.without_value += own.len();
+        one.missing.without_value += own.len();
         warnings.push(Warning::RecordedFailures {
             characteristic: one.characteristic.name().to_owned(),
             failed: own.len(),

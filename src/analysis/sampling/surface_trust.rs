@@ -37,7 +37,7 @@ pub(in crate::analysis) fn of(
     };
     let mut warnings = axes(problem, outcome, c, sigma);
     // The switches of a formula, with their places, replace guesses from the axes.
-    if analysis.verification.as_ref().is_some_and(|verification| verification.switches.is_some()) {
+    if analysis.evidence.verification.as_ref().is_some_and(|verification| verification.switches.is_some()) {
         let seen = |warning: &Warning| matches!(warning, Warning::Kink { .. } | Warning::Discontinuity { .. });
         warnings.retain(|warning| !seen(warning));
     }
@@ -46,7 +46,7 @@ pub(in crate::analysis) fn of(
         let mut found = climb(outcome, climbed, c, (analysis, sigma));
         // If answers of a formula scatter next to the means, there is a kink or a root that is not smooth.
         let formula = problem.function().switches(problem.outputs()[c]).is_some_and(|switches| switches.complete);
-        if analysis.verification.is_some() {
+        if analysis.evidence.verification.is_some() {
             found.retain(|warning| match warning {
                 Warning::Scatter { .. } => !formula,
                 // The sample shows the unexplained share and its effect.
@@ -61,9 +61,9 @@ pub(in crate::analysis) fn of(
 
 /// Warning of a Pearson fit that gives a wrong yield.
 fn pearson(analysis: &CharacteristicAnalysis) -> Option<Warning> {
-    let source = analysis.yield_source.filter(|source| *source != YieldSource::Pearson)?;
-    let fit = analysis.pearson?.rejected()?;
-    let rejected = analysis.capability?.rejected()?;
+    let source = analysis.distribution.yield_source.filter(|source| *source != YieldSource::Pearson)?;
+    let fit = analysis.evidence.pearson?.rejected()?;
+    let rejected = analysis.distribution.capability?.rejected()?;
     // A proof without an estimate has no error.
     let error = match analysis.error_estimate.as_ref().and_then(|estimate| estimate.yield_) {
         None if source == YieldSource::Proof => 0.0,
@@ -160,12 +160,12 @@ fn climb(
     }
     let Some(check) = &climbed.checked[c] else { return warnings };
     let beyond = usize::from(climbed.tails[c].is_some_and(f64::is_infinite));
-    let told = analysis.verification.as_ref().is_some_and(|verification| verification.failed > 0);
+    let told = analysis.evidence.verification.as_ref().is_some_and(|verification| verification.failed > 0);
     if check.failed + beyond > 0 && !told && outcome.evaluated.known.value(&Point::Centre, c).is_some() {
         let (failed, points) = (check.failed + beyond, check.failed + check.points + beyond);
         warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points, share: None });
     }
-    let sampled = analysis.model_sampled.as_ref();
+    let sampled = analysis.evidence.model_sampled.as_ref();
     if let Some((sampled, error)) = sampled.and_then(|sampled| Some((sampled, sampled.error.as_ref()?))) {
         warnings.push(Warning::FailedSamples {
             characteristic: characteristic(),

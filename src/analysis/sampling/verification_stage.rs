@@ -62,7 +62,7 @@ pub(in crate::analysis) fn verify(
         return;
     }
     // Points of the model have replaced a surface with a kink at the nominal point. Their errors need no surface.
-    let replaced = |c: usize, one: &CharacteristicAnalysis| kinked.contains(&c) && one.model_sampled.is_some();
+    let replaced = |c: usize, one: &CharacteristicAnalysis| kinked.contains(&c) && one.evidence.model_sampled.is_some();
     let open: Vec<usize> = (0..characteristics.len())
         .filter(|&c| !replaced(c, &characteristics[c]) && !proven(outcome, c, &mut characteristics[c]))
         .collect();
@@ -91,8 +91,8 @@ pub(in crate::analysis) fn verify(
 /// True if the surface is proven to equal the function. Its errors are roundings then.
 fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool {
     let (Some(proof), Some(moments)) = (outcome.fitted[c].proof, one.moments) else { return false };
-    let sampled = one.sampled.is_some() || one.model_sampled.is_some();
-    if sampled || one.without_value > 0 {
+    let sampled = one.evidence.sampled.is_some() || one.evidence.model_sampled.is_some();
+    if sampled || one.missing.without_value > 0 {
         return false;
     }
     let sigma = moments.sigma();
@@ -109,7 +109,7 @@ fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool
     };
     let yield_ = of_yield(&estimate, &moments, one.characteristic.limits());
     one.error_estimate = Some(ErrorEstimate { yield_, ..estimate });
-    one.verification = Some(Verification {
+    one.evidence.verification = Some(Verification {
         kind: VerificationKind::Exact { degree: proof.degree },
         points: 0,
         failed: 0,
@@ -177,7 +177,7 @@ fn sample(
     let replaced = (options.method == Method::Auto || refuted) && replace(one, &found);
     let Some(moments) = one.moments else { return Some(spent) };
     let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));
-    let law = one.capability.and_then(|capability| capability.yield_());
+    let law = one.distribution.capability.and_then(|capability| capability.yield_());
     let limits = one.characteristic.limits();
     let sides = [limits.lower().is_some(), limits.upper().is_some()];
     one.error_estimate = Some(ErrorEstimate {
@@ -189,7 +189,7 @@ fn sample(
         sources: vec![ErrorSource::Sampled { points: found.points as u64 }],
     });
     let quantiles = reported_quantiles(&found);
-    one.verification = Some(Verification {
+    one.evidence.verification = Some(Verification {
         kind: VerificationKind::Sample,
         points: found.points,
         failed: 0,
@@ -267,11 +267,11 @@ fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
     let limits = one.characteristic.limits();
     let capability = |law: &Law| Capability::of(law, moments.mean(), moments.sigma(), limits);
     let law = Law::fit(&moments);
-    one.capability = law.as_ref().ok().map(capability);
-    one.normal = Law::normal(&moments).ok().map(|law| capability(&law));
-    one.law = Some(law);
+    one.distribution.capability = law.as_ref().ok().map(capability);
+    one.evidence.normal = Law::normal(&moments).ok().map(|law| capability(&law));
+    one.evidence.law = Some(law);
     one.moments = Some(moments);
-    one.sampled = None;
+    one.evidence.sampled = None;
     true
 }
 
@@ -323,7 +323,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
     let of = |part: fn(&Moments) -> Option<f64>| (part(&moments), surface.as_ref().and_then(part));
     let (mean, sigma) = (of(|m| Some(m.mean())), of(|m| Some(m.sigma())));
     let (skewness, kurtosis) = (of(Moments::skewness), of(Moments::kurtosis));
-    let law = one.capability.and_then(|capability| capability.yield_());
+    let law = one.distribution.capability.and_then(|capability| capability.yield_());
     one.error_estimate = Some(ErrorEstimate {
         mean: error(0, mean.0, mean.1),
         sigma: error(1, sigma.0, sigma.1),
@@ -332,8 +332,8 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         yield_: found.yield_.zip(law).map(|(share, law)| share.error_of(law)),
         sources: vec![ErrorSource::Checked { points: checked.count }],
     });
-    one.without_value += found.failed;
-    one.verification = Some(Verification {
+    one.missing.without_value += found.failed;
+    one.evidence.verification = Some(Verification {
         kind: VerificationKind::Checks,
         points: checked.count,
         failed: found.failed,
@@ -358,7 +358,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
 
 /// Warnings that follow from the verification of one characteristic.
 pub(in crate::analysis) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec<Warning> {
-    let Some(verification) = &one.verification else { return Vec::new() };
+    let Some(verification) = &one.evidence.verification else { return Vec::new() };
     let characteristic = || one.characteristic.name().to_owned();
     let mut warnings = Vec::new();
     if verification.failed > 0 {

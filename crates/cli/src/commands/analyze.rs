@@ -184,7 +184,7 @@ pub(crate) fn analyzed(
 
 /// Exit code of the requirements, if they are checked.
 fn verdict(analysis: &Analysis, asked: &AnalyzeArgs) -> Exit {
-    let unfinished = analysis.characteristics.iter().any(|one| one.unfinished);
+    let unfinished = analysis.characteristics.iter().any(|one| one.missing.unfinished);
     let judged = analysis.characteristics.iter().flat_map(CharacteristicAnalysis::requirements);
     let judged = judged.chain(analysis.joint_requirement);
     if asked.check { checked(unfinished, judged) } else { Exit::Done }

@@ -20,7 +20,7 @@ const ONE_BY_ONE: &str = "[dimensions]\nhousing = { nominal = 9, tolerance = 0.2
 fn figures(text: &str) -> [f64; 4] {
     let study = Study::from_toml(text, "group.toml").unwrap_or_else(|error| panic!("{error}"));
     let one = analyze(&study.problem, &Method::Full.into()).unwrap().characteristics.remove(0);
-    let (moments, [low, high]) = (one.moments.unwrap(), one.worst_case.unwrap());
+    let (moments, [low, high]) = (one.moments.unwrap(), one.range.worst_case.unwrap());
     [moments.mean(), moments.sigma(), low, high]
 }
 

@@ -34,7 +34,7 @@ fn imported(table: &str, more: &[&str]) -> Result<String, String> {
 fn figures(text: &str) -> [f64; 4] {
     let study = Study::from_toml(text, "stack").unwrap_or_else(|error| panic!("{error}\n{text}"));
     let one = analyze(&study.problem, &Method::Full.into()).unwrap().characteristics.remove(0);
-    let (moments, [low, high]) = (one.moments.unwrap(), one.worst_case.unwrap());
+    let (moments, [low, high]) = (one.moments.unwrap(), one.range.worst_case.unwrap());
     [moments.mean(), moments.sigma(), low, high]
 }
 

@@ -31,7 +31,7 @@ fn imported(table: &str, more: &[&str]) -> [String; 2] {
 fn figures(text: &str) -> ([f64; 3], Option<String>) {
     let study = Study::from_toml(text, "stack").unwrap_or_else(|error| panic!("{error}\n{text}"));
     let one = analyze(&study.problem, &Method::Full.into()).unwrap().characteristics.remove(0);
-    let ([low, high], unit) = (one.worst_case.unwrap(), one.characteristic.unit().map(str::to_owned));
+    let ([low, high], unit) = (one.range.worst_case.unwrap(), one.characteristic.unit().map(str::to_owned));
     let nominal = one.nominal.unwrap();
     ([nominal, low, high], unit)
 }

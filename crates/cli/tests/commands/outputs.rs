@@ -68,12 +68,12 @@ fn multiples_are_wholly_correlated() {
 fn bounds_of_a_formula_cost_nothing() {
     let found = of("p = { formula = \"u^2\" }\n", None);
     let one = &found.characteristics[0];
-    let bounds = one.bounds.as_ref().unwrap();
+    let bounds = one.range.bounds.as_ref().unwrap();
     assert!(bounds.proven && bounds.bounds[0] <= 0.0 && bounds.bounds[1] >= 9.0, "{bounds:?}");
     // Within a thousandth of sigma, which is sqrt 2.
     assert!(bounds.bounds[0] > -0.0015 && bounds.bounds[1] < 9.0015, "{bounds:?}");
-    assert_eq!(one.worst_case, Some([0.0; 2]));
-    assert!(of("p = { formula = \"u^2\" }\n", Some(0)).characteristics[0].bounds.is_none());
+    assert_eq!(one.range.worst_case, Some([0.0; 2]));
+    assert!(of("p = { formula = \"u^2\" }\n", Some(0)).characteristics[0].range.bounds.is_none());
 }
 
 /// A position lies within its circle: `3 x + 4 y` reaches 5 radii. The corners of the box around the circle would give 7.
@@ -83,8 +83,8 @@ fn corners_of_the_box_of_a_circle_are_no_worst_case() {
                 [characteristics]\ny = { formula = \"3*hole_x + 4*hole_y\" }\n";
     let study = Study::from_toml(text, "study.toml").unwrap();
     let one = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0);
-    let bounds = one.bounds.as_ref().unwrap();
-    let [least, most] = one.worst_case.unwrap();
+    let bounds = one.range.bounds.as_ref().unwrap();
+    let [least, most] = one.range.worst_case.unwrap();
     // Five radii of 0.1, with each end within the rounding of the proof.
     assert_eq!([least, most], [-0.5, 0.5]);
     assert!(bounds.proven && bounds.bounds[0] <= least && bounds.bounds[1] >= most, "{bounds:?} {least} {most}");

@@ -57,7 +57,9 @@ fn proofs_of_one_side_need_neither_bounds_of_both_nor_bounded_parts() {
     let problem = Study::from_text(StudyText::toml("study.toml", text)).unwrap().problem;
     let analysed = analyze(&problem, &Method::Full.into()).unwrap();
     let sampled = simulate(&problem, &SimulationOptions::default().with_samples(20_000)).unwrap();
-    let sides = |c: usize| [analysed.characteristics[c].reject_intervals, sampled.characteristics[c].reject_intervals];
+    let sides = |c: usize| {
+        [analysed.characteristics[c].distribution.reject_intervals, sampled.characteristics[c].reject_intervals]
+    };
     for [below, above] in sides(0) {
         assert!(above == Some([0.0; 2]) && below.unwrap()[0] > 0.2, "{below:?} {above:?}");
     }
@@ -124,7 +126,7 @@ fn a_side_of_weighted_points_has_an_effective_count() {
     for seed in 1..=20 {
         let options = Options::from(Method::SecondOrder).with_seed(seed);
         let found = analyze(&problem, &options).unwrap();
-        let [below, above] = found.characteristics[0].reject_intervals.map(Option::unwrap);
+        let [below, above] = found.characteristics[0].distribution.reject_intervals.map(Option::unwrap);
         // Equivalent to none of the 32 768 points of the core: 3.7 of them.
         assert!(below[0] == 0.0 && below[1] > 0.0 && below[1] < 2e-4, "{below:?}");
         held += u32::from(above[0] <= 0.012_380_8 && 0.012_380_8 <= above[1]);

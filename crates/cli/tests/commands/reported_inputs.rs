@@ -10,7 +10,7 @@ use sensitol_testing::close;
 /// Mean, sigma and shares below and above the limits of the only characteristic.
 fn figures(study: &Study) -> [f64; 4] {
     let one = analyze(&study.problem, &Method::Full.into()).unwrap().characteristics.remove(0);
-    let (moments, capability) = (one.moments.unwrap(), one.capability.unwrap());
+    let (moments, capability) = (one.moments.unwrap(), one.distribution.capability.unwrap());
     [moments.mean(), moments.sigma(), capability.ppm_below().unwrap() * 1e-6, capability.ppm_above().unwrap() * 1e-6]
 }
 

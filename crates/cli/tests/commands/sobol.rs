@@ -60,12 +60,12 @@ fn a_surface_has_its_indices_for_nothing() {
                 [characteristics]\ny = { formula = \"a + a*b\" }\nz = { formula = \"a + c^2\" }\n";
     let found = analysed(text, Method::Full);
     let [y, z] = &found.characteristics[..] else { panic!("two") };
-    assert_eq!(y.indices.as_ref().unwrap().source, IndexSource::Surface);
+    assert_eq!(y.contributions.indices.as_ref().unwrap().source, IndexSource::Surface);
     // The formula proves its surface: there are no errors except the rounding of a few sums.
     for (found, truth) in of(y).into_iter().zip([[0.5, 1.0], [0.0, 0.5], [0.0, 0.0]]) {
         found.into_iter().zip(truth).for_each(|(found, truth)| reaches(found, truth, 0.0));
     }
-    assert!((y.indices.as_ref().unwrap().interactions.unwrap() - 0.5).abs() < 1e-12);
+    assert!((y.contributions.indices.as_ref().unwrap().interactions.unwrap() - 0.5).abs() < 1e-12);
     // (1 + c)^2 has the variance 4 + 2, and a adds 1.
     for (found, truth) in of(z).into_iter().zip([1.0 / 7.0, 0.0, 6.0 / 7.0]) {
         found.into_iter().for_each(|found| reaches(found, truth, 0.0));
@@ -80,7 +80,7 @@ fn dimensions_that_vary_together_are_one_factor() {
     let study = parse(text).unwrap();
     let found = analyze(&study.problem, &Method::Full.into()).unwrap();
     let one = &found.characteristics[0];
-    let factor = &one.indices.as_ref().unwrap().factors[0];
+    let factor = &one.contributions.indices.as_ref().unwrap().factors[0];
     assert_eq!(factor.dimensions, ["a", "b"]);
     reaches(factor.first_order, 0.75, 1e-9);
     reaches(factor.total, 1.0, 1e-9);
@@ -106,7 +106,7 @@ fn zones_and_rows_are_one_factor() {
                 [[joint]]\nof = [\"x\", \"y\"]\nlaw = \"disc\"\n[characteristics]\nr = { formula = \"x + y + w\" }\n";
     let study = parse(text).unwrap();
     let found = analyze(&study.problem, &Method::Full.into()).unwrap();
-    let factor = &found.characteristics[0].indices.as_ref().unwrap().factors[0];
+    let factor = &found.characteristics[0].contributions.indices.as_ref().unwrap().factors[0];
     // x + y acts as one input of slope sqrt 2, with variance 2/4 of a unit disc. w has (1.5/3)^2.
     reaches(factor.first_order, 0.5 / 0.75, 1e-9);
     reaches(factor.total, 0.5 / 0.75, 1e-9);
@@ -146,10 +146,10 @@ fn shares_of_a_surface_that_is_not_trusted_are_never_shown() {
         for method in [Method::Auto, Method::Full, Method::SecondOrder] {
             let found = analysed(&text, method);
             let one = &found.characteristics[0];
-            assert_eq!(one.indices.as_ref().unwrap().source, IndexSource::Exchange, "{method}");
+            assert_eq!(one.contributions.indices.as_ref().unwrap().source, IndexSource::Exchange, "{method}");
             let shown = |row: &sensitol::analysis::Sensitivity| row.linear_share.or(row.curvature_share).is_some();
-            assert!(!one.sensitivities.iter().any(shown) && one.left_out_share.is_none(), "{method}");
-            assert!(one.interactions.iter().all(|pair| pair.share.is_none()), "{method}");
+            assert!(!one.sensitivities.iter().any(shown) && one.contributions.left_out_share.is_none(), "{method}");
+            assert!(one.contributions.interactions.iter().all(|pair| pair.share.is_none()), "{method}");
             for (found, truth) in of(one).into_iter().zip(&truth) {
                 // 65 536 points. The largest error of 312 indices was 0.026 when the method was designed.
                 found.into_iter().zip(truth).for_each(|(found, &truth)| reaches(found, truth, 0.03));
@@ -170,14 +170,14 @@ fn costly_samples_have_first_orders_by_ranks() {
     let found = analyze(&problem, &options).unwrap();
     let one = &found.characteristics[0];
     assert!(found.run.evaluations <= 3000);
-    assert_eq!(one.indices.as_ref().unwrap().source, IndexSource::Ranks);
+    assert_eq!(one.contributions.indices.as_ref().unwrap().source, IndexSource::Ranks);
     for ([first, total], [truth, _]) in of(one).into_iter().zip(exact("ishigami")) {
         assert_eq!(total, None);
         // Some hundred points have a standard error of a tenth.
         reaches(first, truth, 0.15);
     }
     // The rest of the variance belongs to x1 and x3 together.
-    let left = one.indices.as_ref().unwrap().interactions.unwrap();
+    let left = one.contributions.indices.as_ref().unwrap().interactions.unwrap();
     let error = of(one).iter().filter_map(|[first, _]| first.unwrap().error).fold(0.0, f64::hypot);
     assert!((left - 0.2437).abs() < 3.0 * error, "{left}");
 }

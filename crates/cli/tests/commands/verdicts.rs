@@ -82,13 +82,16 @@ fn what_was_not_evaluated_is_no_failure() {
     let y = y.with_requirement(Requirement::Cpk(1.0)).unwrap();
     let problem = Problem::new(dimensions, model).unwrap().asking([y]).unwrap();
     let whole = analyze(&problem, &Method::Full.into()).unwrap();
-    assert_eq!((whole.run.stopped, whole.characteristics[0].unfinished), (None, false));
+    assert_eq!((whole.run.stopped, whole.characteristics[0].missing.unfinished), (None, false));
     // Cheap models are evaluated in blocks: the strongest pairs come in a second stage, after the first check of `stop`.
     asked.store(0, order);
     let stop = || (asked.load(order) >= 7).then_some(StopReason::TimeLimit);
     let cut = analyze_with(&problem, &Method::SixN.into(), &Run::to_the_end().stopping_when(&stop)).unwrap();
     let one = &cut.characteristics[0];
-    assert_eq!((cut.run.stopped, cut.run.unfinished(), one.unfinished), (Some(StopReason::TimeLimit), true, true));
+    assert_eq!(
+        (cut.run.stopped, cut.run.unfinished(), one.missing.unfinished),
+        (Some(StopReason::TimeLimit), true, true)
+    );
     assert!(one.requirements().len() == 2 && one.requirements().iter().all(|of| of.verdict == Verdict::Inconclusive));
     let lost = |warning: &&Warning| matches!(warning, Warning::LostDerivative { .. });
     let lost: Vec<&Warning> = cut.warnings.iter().filter(lost).collect();
@@ -97,7 +100,7 @@ fn what_was_not_evaluated_is_no_failure() {
     assert!(!lost.is_empty() && lost.iter().all(unevaluated), "{lost:?}");
     let missing =
         |pair: sensitol::analysis::Interaction<'_>| pair.missing == Some(sensitol::analysis::Missing::NotEvaluated);
-    assert!(one.interactions.iter().all(missing), "{:?}", one.interactions);
+    assert!(one.contributions.interactions.iter().all(missing), "{:?}", one.contributions.interactions);
 
     // A stopped sample has estimates, but no verdict.
     let never = || Some(StopReason::Interrupted);

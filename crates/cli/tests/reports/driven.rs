@@ -260,7 +260,7 @@ fn points_without_a_value_are_said_whatever_the_side() {
     assert!(codes(&analysis).contains(&"failed-points"), "{:?}", analysis.warnings);
     let (problem, _) = driving(0.3, 6.43, [&sum, &rest]);
     let analysis = analyze(&problem, &Method::Full.into()).unwrap();
-    assert!(analysis.characteristics[0].without_value > 0);
+    assert!(analysis.characteristics[0].missing.without_value > 0);
     assert_eq!(codes(&analysis), ["domain-edge-within"]);
 }
 
@@ -351,7 +351,7 @@ fn few_inputs_of_a_model_are_the_narrower_side() {
     let checks = check_points(None, 2) as u64;
     assert!(verified.run.evaluations > 7 && verified.run.evaluations <= 7 + checks, "{}", verified.run.evaluations);
     // Few points always leave a part of the variance unverified.
-    let share = verified.characteristics[0].verification.as_ref().unwrap().left.unwrap();
+    let share = verified.characteristics[0].evidence.verification.as_ref().unwrap().left.unwrap();
     assert!(share < 1e-4, "{share}");
     // Other methods too: 2 m + 1.
     let (problem, asked) = narrow(0.3);

@@ -21,7 +21,7 @@ pub fn same_as_expanded(text: &str, method: Method) {
         analysis
             .characteristics
             .iter()
-            .map(|one| (one.moments, one.sensitivities.clone(), one.rss, one.worst_case))
+            .map(|one| (one.moments, one.sensitivities.clone(), one.linear.rss, one.range.worst_case))
             .collect::<Vec<_>>()
     };
     assert_eq!(figures(&study), figures(&expanded));
@@ -36,7 +36,7 @@ fn chains_baselines_and_direct_dimensions() {
     let case = case("chain-baseline-direct");
     let printed = |key: &str| case["printed"][key]["value"].as_f64().unwrap();
     let half = |text: &str| {
-        let [lower, upper] = analysed(text, Method::WorstCase).characteristics[0].worst_case.unwrap();
+        let [lower, upper] = analysed(text, Method::WorstCase).characteristics[0].range.worst_case.unwrap();
         0.5 * (upper - lower)
     };
     // Sums of three numbers of some tens: rounding of 1e-14.

@@ -36,7 +36,7 @@ fn holds(text: &str, exact: &serde_json::Value) {
 #[track_caller]
 fn worst(text: &str) -> [f64; 2] {
     let analysis = analysed(text, Method::SecondOrder);
-    let bounds = analysis.characteristics[0].bounds.clone().expect("a formula has bounds");
+    let bounds = analysis.characteristics[0].range.bounds.clone().expect("a formula has bounds");
     assert!(bounds.proven, "{bounds:?}");
     bounds.bounds
 }
@@ -111,7 +111,7 @@ fn the_worst_case_of_a_zone_with_a_bonus() {
     assert!((269.0 - least) / sigma < 1e-3 && least <= 269.0, "{least}");
     assert!((greatest - 271.0) / sigma < 1e-3 && greatest >= 271.0, "{greatest}");
     // The linear worst case holds the size at its mean.
-    let linear = analysed(&text, Method::SecondOrder).characteristics[0].worst_case.unwrap();
+    let linear = analysed(&text, Method::SecondOrder).characteristics[0].range.worst_case.unwrap();
     close(linear[1], 270.75, 1e-9, 1.0);
 }
 
@@ -364,7 +364,7 @@ fn fasteners_of_asme() {
         same_as_expanded(&text, Method::SecondOrder);
         let options = Options::from(Method::SecondOrder).with_extremes(true);
         let analysis: Analysis = analyze(&parse(&text).unwrap().problem, &options).unwrap();
-        analysis.characteristics[0].extremes.as_ref().unwrap().least.value
+        analysis.characteristics[0].range.extremes.as_ref().unwrap().least.value
     };
     let printed = |name: &str| case(name)["printed"]["T"]["value"].as_f64().unwrap();
     let floating = "{ kind = \"floating\", holes = [\"H\", \"H\"], pin = \"F\", places = [\"a\", \"b\"] }";

@@ -594,7 +594,12 @@ y = { formula = "sin(a) + b" }
         (analysis, rows.iter().find(|row| row[0] == "not resolved").cloned(), rows)
     };
     let (analysis, known, rows) = row(&Method::SecondOrder.into());
-    let left = analysis.characteristics[0].verification.as_ref().and_then(|of| of.left).expect("a formula is sampled");
+    let left = analysis.characteristics[0]
+        .evidence
+        .verification
+        .as_ref()
+        .and_then(|of| of.left)
+        .expect("a formula is sampled");
     let known = known.expect("a surface that misses something leaves it");
     assert!((known[2].trim_end_matches(" %").parse::<f64>().unwrap() / 100.0 - left).abs() < 1e-4, "{known:?} {left}");
     // Error within 2 sqrt(S U) + U: its second digit is the last one printed.
@@ -671,7 +676,7 @@ y = { formula = "max(a, b)", lower = -2, upper = 3 }
     let study = study(text);
     let options = study.options.clone().with_verify(0);
     let (analysis, page) = analysed(&study, &options);
-    let sampled = analysis.characteristics[0].model_sampled.as_ref().expect("a kink is sampled");
+    let sampled = analysis.characteristics[0].evidence.model_sampled.as_ref().expect("a kink is sampled");
     let histogram = sampled.histogram.as_ref().unwrap();
     assert_eq!(histogram.counts.iter().sum::<u64>(), sampled.samples);
     // Drawn twice, for wide and for narrow pages.
@@ -807,12 +812,12 @@ fn an_unchanged_what_if_is_the_verdict() {
         let all = answer["found"][0]["characteristics"].as_array().unwrap();
         for (found, one) in all.iter().zip(&analysis.characteristics) {
             let shown = |side: usize| found["rejects"][side].as_f64().map(f64::to_bits);
-            let own = one.capability.unwrap();
+            let own = one.distribution.capability.unwrap();
             assert_eq!([shown(0), shown(1)], [own.below, own.above].map(|share| share.map(f64::to_bits)), "{name}");
             let Some([low, high]) = one.yield_interval().filter(|_| own.yield_().is_some()) else { continue };
             let interval = [0, 1].map(|end| found["interval"][end].as_f64().unwrap());
             assert!((interval[0] - low).abs() + (interval[1] - high).abs() < 1e-15, "{name}: {interval:?}");
-            sources.push(one.yield_source.unwrap());
+            sources.push(one.distribution.yield_source.unwrap());
         }
     }
     sources.sort_unstable();

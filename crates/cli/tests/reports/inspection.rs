@@ -24,7 +24,7 @@ fn study(sigma: f64, rest: &str) -> String {
 
 fn inspected(text: &str, options: &Options) -> InspectionRisks {
     let study = parse(text).unwrap_or_else(|error| panic!("{error}"));
-    analyze(&study.problem, options).unwrap().characteristics.remove(0).inspection.unwrap()
+    analyze(&study.problem, options).unwrap().characteristics.remove(0).distribution.inspection.unwrap()
 }
 
 fn value(of: Option<EstimatedShare>) -> f64 {
@@ -117,7 +117,7 @@ fn risks_are_those_of_parts_and_readings() {
         let cheap = analyze(&study.problem, &Options::from(Method::Auto)).unwrap().characteristics.remove(0);
         let dear = analyze(&dear, &Options::from(Method::Full)).unwrap().characteristics.remove(0);
         for one in [cheap, dear] {
-            let found = one.inspection.unwrap();
+            let found = one.distribution.inspection.unwrap();
             for (found, count) in [(found.false_accept, accepted), (found.false_reject, rejected)] {
                 let (truth, found) = (count as f64 / n as f64, found.unwrap());
                 let scatter = (truth / n as f64).sqrt();

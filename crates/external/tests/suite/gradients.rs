@@ -43,7 +43,10 @@ fn gradients_save_evaluations() {
             if method != Method::Rss {
                 assert!((found.mean() - expected.mean()).abs() < 1e-11, "{n}");
                 assert!((found.skewness().unwrap() - expected.skewness().unwrap()).abs() < 1e-10, "{n}");
-                assert_eq!(slopes.characteristics[0].interactions.len(), plain.characteristics[0].interactions.len());
+                assert_eq!(
+                    slopes.characteristics[0].contributions.interactions.len(),
+                    plain.characteristics[0].contributions.interactions.len()
+                );
             }
             let [few, many] = match method {
                 // The means and a check.

@@ -207,7 +207,7 @@ fn the_kink_is_seen_and_sampled_around() {
     assert!(blind.iter().any(|off| off.abs() > 0.1), "{blind:?}");
     warned(Method::SixN);
     let auto = warned(Method::Auto);
-    let sampled = auto.characteristics[0].model_sampled.as_ref().expect("auto sampled the model");
+    let sampled = auto.characteristics[0].evidence.model_sampled.as_ref().expect("auto sampled the model");
     assert!(sampled.samples >= 1000, "{sampled:?}");
     // The tolerance of `auto` is one percent of sigma. The reference's own error is a tenth of that.
     let [mean, sigma] = off(&auto);
@@ -335,8 +335,8 @@ fn compression_clearance() {
     let found = &analysis.characteristics[0];
     assert!((found.nominal.unwrap() - 0.8411).abs() < 1e-12);
     // To the published digits.
-    assert!((found.rss.unwrap() - 0.09047).abs() < 5e-6);
-    let [low, high] = found.worst_case.unwrap();
+    assert!((found.linear.rss.unwrap() - 0.09047).abs() < 5e-6);
+    let [low, high] = found.range.worst_case.unwrap();
     assert!((0.5 * (high - low) - 0.229).abs() < 1e-12 && (0.5 * (high + low) - 0.8411).abs() < 1e-12);
     // The published sigma, and 3 sigma.
     assert!((found.moments.unwrap().sigma() - 0.0301).abs() < 1e-4);

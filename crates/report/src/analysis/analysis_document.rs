@@ -71,7 +71,7 @@ impl Report {
         document.gap();
         document.table(self.verdicts());
         if let Some(joint) = &self.analysis.joint {
-            let measured = self.analysis.characteristics.iter().any(|one| one.sampling.is_some());
+            let measured = self.analysis.characteristics.iter().any(|one| one.evidence.sampling.is_some());
             let interval = self.analysis.joint_interval.filter(|_| measured);
             let error = interval.map_or(joint.error, |interval| one_error(joint.value, interval));
             let text = Rejects::all(1.0 - joint.value, Some(error)).yield_text().unwrap_or_default();
@@ -119,7 +119,10 @@ impl Report {
         one.errors(&mut section);
         one.extremes(&mut section);
         one.distribution(&mut section);
-        one.sampling.iter().for_each(|of| sampled(&mut section, of, one.sigma().unwrap_or(0.0), one.limited()));
+        one.evidence
+            .sampling
+            .iter()
+            .for_each(|of| sampled(&mut section, of, one.sigma().unwrap_or(0.0), one.limited()));
         if let Some(spans) = bars::spans(one) {
             section.aside("Worst case and RSS", vec![Element::Chart(Chart::Bars(spans))]);
         }
@@ -228,7 +231,7 @@ pub(crate) trait CharacteristicSections {
 impl CharacteristicSections for CharacteristicAnalysis {
     fn errors(&self, section: &mut Section) {
         let error = |error: Option<f64>| known(error, |error| significant(error, 2));
-        match &self.verification {
+        match &self.evidence.verification {
             Some(found) => section.note(found.words()),
             // No remark if there are no moments, or if nothing that varies has an effect.
             None if self.mean().is_some() && !self.constant => {
@@ -240,7 +243,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
             None => {}
         }
         let mut detail = Vec::new();
-        if let Some(fit) = &self.residual {
+        if let Some(fit) = &self.evidence.residual {
             detail.note(format!(
                 "{} coefficients fitted to {} points: residual standard error {}, of the mean {}, of sigma {}",
                 fit.coefficients,
@@ -254,7 +257,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
             let basis: Vec<String> = estimate.sources.iter().map(|source| source.words()).collect();
             detail.wrapped(2, format!("error estimates are based on: {}", basis.join("; ")));
         }
-        if let Some(sampled) = self.error_estimate.as_ref().and(self.model_sampled.as_ref()) {
+        if let Some(sampled) = self.error_estimate.as_ref().and(self.evidence.model_sampled.as_ref()) {
             section.wrapped(2, format!(
                 "the surface is not trusted: mean to kurtosis from {} points of the model, with the surface as control variate",
                 sampled.samples
@@ -264,7 +267,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
             let percent = within(100.0 * of.value, 4, Some(100.0 * of.error));
             detail.note(format!("coefficient of variation {percent} %"));
         }
-        if let Some(sampled) = &self.sampled {
+        if let Some(sampled) = &self.evidence.sampled {
             let [sigma, skewness, kurtosis] =
                 [sampled.sigma, sampled.skewness, sampled.kurtosis].map(|error| significant(error, 2));
             detail.note(format!(
@@ -276,7 +279,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
     }
 
     fn extremes(&self, section: &mut Section) {
-        let Some(found) = &self.extremes else { return };
+        let Some(found) = &self.range.extremes else { return };
         let scale = self.scale();
         let [least, greatest] = carried_ends([found.least.value, found.greatest.value], scale, None);
         let proven = if found.proven() { "proven" } else { "not proven" };
@@ -303,7 +306,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
                 let (kind, sigma) = (law.kind().name(), self.sigma().unwrap_or(0.0));
                 let mut detail =
                     vec![Element::Gap, Element::Chart(Chart::Spread(Box::new(self.spread(law, kind)))), Element::Gap];
-                match &self.quantiles {
+                match &self.distribution.quantiles {
                     Some(of) => {
                         detail.note(format!("quantiles by {}", of.source.words()));
                         detail.table(quantile_table("share below", &of.values, sigma));
@@ -313,10 +316,10 @@ impl CharacteristicSections for CharacteristicAnalysis {
                 section.detail(detail);
             }
         }
-        if self.surface_law.is_some_and(|law| law.steps) && self.sigma().is_some_and(|sigma| sigma > 0.0) {
+        if self.evidence.surface_law.is_some_and(|law| law.steps) && self.sigma().is_some_and(|sigma| sigma > 0.0) {
             section.note("the surface law is a step function: all that varies has single values");
         }
-        if let Some(points) = self.surface_law.as_ref().and_then(|law| law.counted) {
+        if let Some(points) = self.evidence.surface_law.as_ref().and_then(|law| law.counted) {
             section.note(format!("the surface law is counted at {points} points of the surface"));
         }
         section.table(self.quantile_data());
@@ -324,7 +327,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
     }
 
     fn covered(&self, section: &mut Section) {
-        let Some(of) = &self.coverage else { return };
+        let Some(of) = &self.distribution.coverage else { return };
         /// Least relative difference of the shortest interval from that with equal tails that is worth a line.
         const NOTABLE: f64 = 0.01;
         let share = plain(100.0 * of.probability);
@@ -342,24 +345,28 @@ impl CharacteristicSections for CharacteristicAnalysis {
     }
 
     fn spread(&self, law: &Pearson, kind: &str) -> SpreadChart {
-        let sample = self.model_sampled.as_ref().and_then(|sampling| sampling.histogram.as_ref());
+        let sample = self.evidence.model_sampled.as_ref().and_then(|sampling| sampling.histogram.as_ref());
         let bars = sample.map_or("", |_| " over the sample of the model; each bar with one standard error");
         let names = ["0.135 % quantile", "median", "99.865 % quantile"];
-        let outer = self.quantiles.map_or([None; 3], |of| [0, 3, 6].map(|index| of.values.0[index]));
+        let outer = self.distribution.quantiles.map_or([None; 3], |of| [0, 3, 6].map(|index| of.values.0[index]));
         let marked = names.into_iter().zip(outer).filter_map(|(name, found)| Some((found?.value, "quantile", name)));
         let mut places: Vec<_> = marked.collect();
         let fit = if kind == "normal" { "normal".to_owned() } else { format!("Pearson type {kind}") };
-        let sampled = self.quantiles.is_some_and(|of| of.source == YieldSource::Samples)
-            && self.verification.as_ref().is_some_and(|of| !of.follows_surface());
+        let sampled = self.distribution.quantiles.is_some_and(|of| of.source == YieldSource::Samples)
+            && self.evidence.verification.as_ref().is_some_and(|of| !of.follows_surface());
         let source = if sampled { "Distribution of the sample" } else { "Surface distribution" };
-        let words = match &self.density {
+        let words = match &self.evidence.density {
             Some(table) => format!("{source}{}{bars}; dashed: the Pearson fit ({fit}).", accuracy(table)),
             None => format!("{fit}{bars}."),
         };
         places.extend(self.mean().map(|mean| (mean, "mean", "mean")));
         SpreadChart {
             law: Some(law.clone()),
-            curve: self.density.as_ref().map(|table| table.iter().map(|&[y, density, _]| [y, density]).collect()),
+            curve: self
+                .evidence
+                .density
+                .as_ref()
+                .map(|table| table.iter().map(|&[y, density, _]| [y, density]).collect()),
             bins: sample.cloned(),
             sampled: false,
             limits: Named::limits(self),
@@ -374,14 +381,14 @@ impl CharacteristicSections for CharacteristicAnalysis {
     }
 
     fn quantile_data(&self) -> DataTable {
-        let source = self.quantiles.map_or("", |of| of.source.name());
+        let source = self.distribution.quantiles.map_or("", |of| of.source.name());
         Columns::default()
             .data("characteristic", |_| Cell::text(self.name()))
             .data("probability", |row: &(&'static str, &Option<EstimatedQuantile>)| Cell::text(row.0))
             .data("value", |row| Cell::data(row.1.map(|of| of.value)))
             .data("error", |row| Cell::data(row.1.and_then(|of| of.error)))
             .data("source", move |_| Cell::text(source))
-            .table("quantiles", self.quantiles.iter().flat_map(|of| of.values.iter()))
+            .table("quantiles", self.distribution.quantiles.iter().flat_map(|of| of.values.iter()))
     }
 
     fn kept(&self, section: &mut Section) {
@@ -390,7 +397,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
         section.note(Line::from(shown(self.rejects())).and(target));
         source(self).into_iter().for_each(|line| section.note(line));
         let named = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {}", index(value)));
-        let of = |figure: fn(&Capability) -> Option<f64>| self.capability.as_ref().and_then(figure);
+        let of = |figure: fn(&Capability) -> Option<f64>| self.distribution.capability.as_ref().and_then(figure);
         let join = |indices: Vec<Option<String>>| indices.into_iter().flatten().collect::<Vec<String>>().join("  ");
         let level = of(Capability::sigma_level).filter(|_| self.rejects().are_resolved());
         let indices =
@@ -399,14 +406,15 @@ impl CharacteristicSections for CharacteristicAnalysis {
             section.note(indices);
         }
         lines(self.requirements()).for_each(|line| section.note(line));
-        if let Some(of) = &self.inspection {
+        if let Some(of) = &self.distribution.inspection {
             inspected(section, of);
         }
         let mut detail = Vec::new();
         // Indices of measured values are performance indices (Pp, Ppk), not those of a process in control (Cp, Cpk).
-        let names = if self.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
+        let names = if self.evidence.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
         let indices = [of(|of| of.cp_percentile), of(|of| of.cpk_percentile)];
-        let errors = self.quantiles.map_or([None; 2], |of| [of.cp_percentile_error, of.cpk_percentile_error]);
+        let errors =
+            self.distribution.quantiles.map_or([None; 2], |of| [of.cp_percentile_error, of.cpk_percentile_error]);
         let with_error = |((name, index), error): ((&str, Option<f64>), Option<f64>)| {
             index.map(|index| format!("{name} {}", index_with(index, error)))
         };
@@ -415,20 +423,20 @@ impl CharacteristicSections for CharacteristicAnalysis {
             detail.note(format!("by quantiles (ISO 22514-2): {quantiles}"));
         }
         pearson_fit(self).into_iter().for_each(|line| detail.wrapped(2, line));
-        if let Some(normal) = self.normal.as_ref().filter(|normal| self.differs(normal)) {
+        if let Some(normal) = self.evidence.normal.as_ref().filter(|normal| self.differs(normal)) {
             detail.note(format!("a normal fit would say: {}", shown(Rejects::new(normal.below, normal.above, None))));
         }
         section.detail(detail);
     }
 
     fn rejects(&self) -> Rejects {
-        let error = match self.sampling.as_ref().and(self.yield_()) {
+        let error = match self.evidence.sampling.as_ref().and(self.yield_()) {
             Some(value) => self.yield_interval().map(|interval| one_error(value, interval)),
             None => self.error_estimate.as_ref().and_then(|estimate| estimate.yield_),
         };
         let [below, above] = [|of: &Capability| of.below, |of: &Capability| of.above]
-            .map(|side| self.capability.as_ref().and_then(side));
-        Rejects::new(below, above, error).within(self.reject_intervals)
+            .map(|side| self.distribution.capability.as_ref().and_then(side));
+        Rejects::new(below, above, error).within(self.distribution.reject_intervals)
     }
 
     fn differs(&self, normal: &Capability) -> bool {

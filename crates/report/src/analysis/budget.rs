@@ -104,7 +104,7 @@ impl Budget {
             let part = |(term, row): (&f64, &BudgetRow)| (term / combined).powi(4) / row.degrees;
             if combined > 0.0 { terms.iter().zip(&rows).map(part).sum::<f64>().recip() } else { f64::INFINITY }
         });
-        let probability = one.coverage.map_or(PROBABILITY, |coverage| coverage.probability);
+        let probability = one.distribution.coverage.map_or(PROBABILITY, |coverage| coverage.probability);
         let factor = degrees.and_then(|degrees| factor(probability, degrees));
         Self {
             characteristic: one.name().to_owned(),
@@ -126,7 +126,7 @@ impl Budget {
 fn interacts(one: &CharacteristicAnalysis, dimension: &str) -> bool {
     let named = |pair: &Interaction<'_>| pair.dimensions.contains(&dimension);
     let with = |pair: Interaction<'_>| named(&pair) && pair.mixed.is_some_and(|mixed| mixed != 0.0);
-    one.interactions.iter().any(with)
+    one.contributions.interactions.iter().any(with)
 }
 
 impl BudgetRow {

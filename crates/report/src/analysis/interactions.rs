@@ -40,13 +40,14 @@ pub(crate) trait InteractionSections {
 impl InteractionSections for CharacteristicAnalysis {
     fn has_negative_contributions(&self) -> bool {
         let own = self.sensitivities.iter().filter_map(part);
-        own.chain(self.interactions.iter().filter_map(|pair| pair.share)).any(|share| share <= -0.5 * NEWS)
+        own.chain(self.contributions.interactions.iter().filter_map(|pair| pair.share))
+            .any(|share| share <= -0.5 * NEWS)
     }
 
     fn pairs(&self, section: &mut Section, pairs: usize) {
-        let (possible, examined) = (self.possible_interactions, self.examined());
+        let (possible, examined) = (self.contributions.possible_interactions, self.examined());
         self.together(section);
-        if let Some(of_model) = self.indices.as_ref().filter(|_| self.is_of_model()) {
+        if let Some(of_model) = self.contributions.indices.as_ref().filter(|_| self.is_of_model()) {
             section.note(self.of_model(of_model));
         } else if possible > 0 {
             section.note(self.interactions_in_words(possible, examined));
@@ -57,13 +58,17 @@ impl InteractionSections for CharacteristicAnalysis {
     fn interactions_in_words(&self, possible: usize, examined: usize) -> String {
         let screened = self.screened().count();
         let sum = |screened: bool| {
-            let own =
-                self.interactions.iter().filter(|pair| screened == (pair.origin == Some(DerivativeOrigin::Screened)));
+            let own = self
+                .contributions
+                .interactions
+                .iter()
+                .filter(|pair| screened == (pair.origin == Some(DerivativeOrigin::Screened)));
             let known: Option<Vec<f64>> = own.map(|interaction| interaction.share).collect();
             let sum = known.map(|shares| format!("{} %", percent(shares.iter().sum())));
             sum.unwrap_or_else(|| "an unknown part".to_owned())
         };
-        let by_formula = self.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+        let by_formula =
+            self.evidence.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
         let known = match (examined, by_formula) {
             _ if self.is_proven_linear() => "none (the formula is linear)".to_owned(),
             (0, _) => format!("none of {possible} examined"),
@@ -77,7 +82,8 @@ impl InteractionSections for CharacteristicAnalysis {
     }
 
     fn interaction_table(&self, rows: usize) -> DataTable {
-        let news = self.interactions.iter().filter(|pair| pair.share.is_none_or(|share| share >= NEWS)).count();
+        let news =
+            self.contributions.interactions.iter().filter(|pair| pair.share.is_none_or(|share| share >= NEWS)).count();
         let trusted = !self.is_of_model();
         let most = [if trusted { news.min(SHOWN) } else { 0 }, news.min(SHOWN_ON_PAGE)];
         let both = |pair: &Interaction<'_>| {
@@ -102,12 +108,12 @@ impl InteractionSections for CharacteristicAnalysis {
             })
             .data("rounding", |pair| Cell::data(pair.rounding))
             .data("origin", |pair| Cell::optional(pair.origin.map(DerivativeOrigin::name)))
-            .table("interactions", self.interactions.iter().take(rows))
+            .table("interactions", self.contributions.interactions.iter().take(rows))
             .at_most(most, String::new())
     }
 
     fn together(&self, section: &mut Section) {
-        let Some(of) = &self.indices else { return };
+        let Some(of) = &self.contributions.indices else { return };
         let percents =
             |index: Option<EstimatedShare>| known(index.map(|of| of.value), |share| format!("{} %", percent(share)));
         let mut lines = Vec::new();

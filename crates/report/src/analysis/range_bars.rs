@@ -18,7 +18,7 @@ const BOUNDS: &str = "worst case, proven bounds";
 
 /// Returns the part of the variance that the contributions leave out, in words. Returns None if it is negligible or unknown.
 pub(crate) fn left_out(one: &CharacteristicAnalysis) -> Option<String> {
-    let left_out = one.left_out_share.filter(|share| *share > 0.5 * NEWS)?;
+    let left_out = one.contributions.left_out_share.filter(|share| *share > 0.5 * NEWS)?;
     Some(format!("{} % is left out by all of these", percent(left_out)))
 }
 
@@ -36,7 +36,7 @@ pub(crate) fn ranges(one: &CharacteristicAnalysis) -> Vec<(String, [f64; 2], [St
     };
     [
         ("mean \u{b1} 3\u{3c3}", around(one.mean(), one.sigma().map(|sigma| 3.0 * sigma))),
-        ("RSS", around(one.middle, one.rss)),
+        ("RSS", around(one.linear.middle, one.linear.rss)),
         (name, worst.map(|worst| (worst.ends, worst.texts))),
     ]
     .into_iter()
@@ -50,18 +50,22 @@ pub(crate) fn ranges(one: &CharacteristicAnalysis) -> Vec<(String, [f64; 2], [St
 /// Builds bars of worst case, RSS and three sigma on one scale with the limits. Returns None if there is no extent.
 pub(crate) fn spans(one: &CharacteristicAnalysis) -> Option<Bars> {
     let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);
-    let found = one.extremes.as_ref();
+    let found = one.range.extremes.as_ref();
     let proven = if found.is_some_and(Extremes::proven) { "extremes, proven" } else { "extremes found" };
     // The study may set other inflation factors than Bender's 1.5.
-    let bender = one.rss.zip(one.inflated_rss).is_none_or(|(rss, inflated)| (inflated - 1.5 * rss).abs() <= 1e-9 * rss);
+    let bender = one
+        .linear
+        .rss
+        .zip(one.linear.inflated_rss)
+        .is_none_or(|(rss, inflated)| (inflated - 1.5 * rss).abs() <= 1e-9 * rss);
     let inflated = if bender { "RSS x 1.5 (Bender)" } else { "RSS x factors" };
     let intervals: Vec<(&str, [f64; 2])> = [
-        ("worst case, linear", one.worst_case),
+        ("worst case, linear", one.range.worst_case),
         (proven, found.map(|found| [found.least.value, found.greatest.value])),
         (BOUNDS, one.proof().map(|proof| proof.bounds)),
-        ("RSS", around(one.middle, one.rss)),
-        (inflated, around(one.middle, one.inflated_rss)),
-        ("RSS with shifted means", around(one.middle, one.mean_shift_rss)),
+        ("RSS", around(one.linear.middle, one.linear.rss)),
+        (inflated, around(one.linear.middle, one.linear.inflated_rss)),
+        ("RSS with shifted means", around(one.linear.middle, one.linear.mean_shift_rss)),
         ("mean \u{b1} 3 sigma", around(one.mean(), one.sigma().map(|sigma| 3.0 * sigma))),
     ]
     .into_iter()
@@ -70,7 +74,7 @@ pub(crate) fn spans(one: &CharacteristicAnalysis) -> Option<Bars> {
     let limits = Named::limits(one);
     let ends = intervals.iter().flat_map(|(_, interval)| *interval);
     let extent = ends.clone().fold(f64::NEG_INFINITY, f64::max) - ends.clone().fold(f64::INFINITY, f64::min);
-    let middle = one.mean().or(one.middle).unwrap_or(0.0);
+    let middle = one.mean().or(one.linear.middle).unwrap_or(0.0);
     let near = limits.into_iter().flatten().filter(|limit| (limit - middle).abs() < FAR * extent);
     let scale = Extent::over(ends.chain(near), 0.04, 100.0)?;
     let (unit, slack) = (one.scale(), ROUNDING * extent);

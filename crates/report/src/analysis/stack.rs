@@ -162,6 +162,7 @@ impl Stack {
             rows.map(|(sensitivity, dimension)| StackRow::of(sensitivity, dimension)).collect();
         // Root of the sum of squares. It equals the RSS unless dimensions are correlated, and is unknown if one slope is.
         let alone: Option<f64> = one
+            .linear
             .rss
             .and(rows.iter().map(|row| row.contribution).try_fold(0.0, |sum, part| Some(libm::hypot(sum, part?))));
         for row in &mut rows {
@@ -170,23 +171,23 @@ impl Stack {
         }
         // The six-sigma total stands before that of the moments. A proven worst case of its own stands last.
         let first_order = [Method::Rss, Method::WorstCase].contains(&report.analysis.method);
-        let worst_case = one.worst_case.map(|[lower, upper]| 0.5 * (upper - lower));
+        let worst_case = one.range.worst_case.map(|[lower, upper]| 0.5 * (upper - lower));
         let proven = one.proven_worst_case();
         let linear = proven.as_ref().is_some_and(|proven| one.is_linear(proven));
         let by_slopes = if linear { TotalKind::WorstCase } else { TotalKind::LinearWorstCase };
-        let about_middle = |kind, half_width| StackTotal { kind, middle: one.middle, half_width };
+        let about_middle = |kind, half_width| StackTotal { kind, middle: one.linear.middle, half_width };
         let mut totals = vec![
             about_middle(by_slopes, worst_case),
-            about_middle(TotalKind::Rss, one.rss),
-            about_middle(TotalKind::InflatedRss, one.inflated_rss),
-            about_middle(TotalKind::MeanShiftRss, one.mean_shift_rss),
+            about_middle(TotalKind::Rss, one.linear.rss),
+            about_middle(TotalKind::InflatedRss, one.linear.inflated_rss),
+            about_middle(TotalKind::MeanShiftRss, one.linear.mean_shift_rss),
             StackTotal {
                 kind: if first_order { TotalKind::FirstOrder } else { TotalKind::SecondOrder },
                 middle: one.mean(),
                 half_width: one.sigma().map(|sigma| SIGMAS * sigma),
             },
         ];
-        if let Some(effective) = one.six_sigma {
+        if let Some(effective) = one.linear.six_sigma {
             totals.insert(4, about_middle(TotalKind::SixSigma, Some(SIGMAS * effective)));
         }
         if let Some(KnownWorstCase { ends: [lower, upper], .. }) = proven.filter(|_| !linear) {
@@ -336,7 +337,7 @@ fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     let known = curved.clone().all(|row| row.curvature_share.is_some());
     let curvature: f64 = curved.clone().filter_map(|row| row.curvature_share).sum();
     let mean_shift: f64 = curved.clone().filter_map(|row| row.mean_shift).sum();
-    let examined = one.interactions.iter().filter(|pair| pair.origin != Some(DerivativeOrigin::Screened));
+    let examined = one.contributions.interactions.iter().filter(|pair| pair.origin != Some(DerivativeOrigin::Screened));
     let joint = examined.filter(|pair| real(pair.mixed, pair.rounding));
     let interactions: f64 = joint.clone().filter_map(|pair| pair.share).sum();
     let varying =
@@ -348,7 +349,7 @@ fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     if not_examined {
         return Some(StackNote::NotExamined);
     }
-    match one.possible_interactions.saturating_sub(one.examined_interactions) {
+    match one.contributions.possible_interactions.saturating_sub(one.contributions.examined_interactions) {
         0 => None,
         count => Some(StackNote::InteractionsNotExamined { count }),
     }

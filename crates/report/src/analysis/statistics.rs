@@ -115,7 +115,7 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         let same =
             |[a, b]: [[f64; 2]; 2]| (0..2).all(|end| (a[end] - b[end]).abs() <= SAME * self.sigma().unwrap_or(0.0));
         let proven = self.proven_worst_case();
-        let linear = ("linear worst case", interval(self.worst_case, None));
+        let linear = ("linear worst case", interval(self.range.worst_case, None));
         // A linear worst case with the same printed ends needs no row of its own.
         let (worst, linear) = match &proven {
             Some(proven) if self.is_shown_as_linear(proven) => (("worst case", proven.texts.join(" .. ")), None),
@@ -123,14 +123,14 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
             None => (linear, None),
         };
         // Proven bounds that may not be reached, shown if they differ from the linear worst case.
-        let within = (self.bounds.as_ref().filter(|_| self.extremes.is_none() && proven.is_none()))
+        let within = (self.range.bounds.as_ref().filter(|_| self.range.extremes.is_none() && proven.is_none()))
             .map(|bounds| bounds.bounds)
-            .filter(|within| !self.worst_case.is_some_and(|linear| same([*within, linear])));
+            .filter(|within| !self.range.worst_case.is_some_and(|linear| same([*within, linear])));
         let mut rows = vec![
             (FIRST_INTERVAL, around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma), end_error(3.0))),
-            ("RSS", around(self.middle, self.rss, None)),
-            ("inflated RSS", around(self.middle, self.inflated_rss, None)),
-            ("mean-shift RSS", around(self.middle, self.mean_shift_rss, None)),
+            ("RSS", around(self.linear.middle, self.linear.rss, None)),
+            ("inflated RSS", around(self.linear.middle, self.linear.inflated_rss, None)),
+            ("mean-shift RSS", around(self.linear.middle, self.linear.mean_shift_rss, None)),
             worst,
         ];
         rows.extend(within.map(|within| ("worst case within", outward(within, scale, None).join(" .. "))));
@@ -141,13 +141,15 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
     }
 
     fn is_of_model(&self) -> bool {
-        let sampled = self.indices.as_ref().is_some_and(|of| of.source != IndexSource::Surface);
+        let sampled = self.contributions.indices.as_ref().is_some_and(|of| of.source != IndexSource::Surface);
         sampled && self.sensitivities.iter().all(|row| row.linear_share.is_none())
     }
 
     fn has_totals(&self) -> bool {
         // A linear method has contributions of its own, which indices of the model do not complete.
-        if self.indices.as_ref().is_some_and(|of| of.source != IndexSource::Surface) && !self.is_of_model() {
+        if self.contributions.indices.as_ref().is_some_and(|of| of.source != IndexSource::Surface)
+            && !self.is_of_model()
+        {
             return false;
         }
         let more = |row: &Sensitivity| Some(total(row)? - part(row)?);

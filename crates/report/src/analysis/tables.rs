@@ -40,8 +40,10 @@ impl Report {
             Some(Law::Pearson(law)) => [Some("pearson"), Some(law.kind().name())],
         };
         let end = |interval: Option<[f64; 2]>, end: usize| Cell::data(interval.map(|ends| ends[end]));
-        let fit = |one: &Of<'_>, of: fn(&Capability) -> Option<f64>| Cell::data(one.normal.as_ref().and_then(of));
-        let index_of = |one: &Of<'_>, of: fn(&Capability) -> Option<f64>| one.capability.as_ref().and_then(of);
+        let fit =
+            |one: &Of<'_>, of: fn(&Capability) -> Option<f64>| Cell::data(one.evidence.normal.as_ref().and_then(of));
+        let index_of =
+            |one: &Of<'_>, of: fn(&Capability) -> Option<f64>| one.distribution.capability.as_ref().and_then(of);
         Columns::default()
             .named("name", "characteristic", |one: &Of<'_>| Cell::name(one.name()))
             .data("unit", |one| Cell::optional(one.unit()))
@@ -56,13 +58,13 @@ impl Report {
             .data("sigma", |one| Cell::data(one.sigma()))
             .data("skewness", |one| Cell::data(one.skewness()))
             .data("kurtosis", |one| Cell::data(one.kurtosis()))
-            .data("worst_case_lower", move |one| end(one.worst_case, 0))
-            .data("worst_case_upper", move |one| end(one.worst_case, 1))
-            .data("middle", |one| Cell::data(one.middle))
-            .data("rss", |one| Cell::data(one.rss))
-            .data("inflated_rss", |one| Cell::data(one.inflated_rss))
-            .data("mean_shift_rss", |one| Cell::data(one.mean_shift_rss))
-            .data("left_out_share", |one| Cell::data(one.left_out_share))
+            .data("worst_case_lower", move |one| end(one.range.worst_case, 0))
+            .data("worst_case_upper", move |one| end(one.range.worst_case, 1))
+            .data("middle", |one| Cell::data(one.linear.middle))
+            .data("rss", |one| Cell::data(one.linear.rss))
+            .data("inflated_rss", |one| Cell::data(one.linear.inflated_rss))
+            .data("mean_shift_rss", |one| Cell::data(one.linear.mean_shift_rss))
+            .data("left_out_share", |one| Cell::data(one.contributions.left_out_share))
             .data("distribution", move |one| Cell::optional(family(one)[0]))
             .data("type", move |one| Cell::optional(family(one)[1]))
             .data("lower", |one| Cell::data(one.lower()))
@@ -80,7 +82,7 @@ impl Report {
             .data("normal_yield", move |one| fit(one, Capability::yield_))
             .data("normal_ppm_below", move |one| fit(one, Capability::ppm_below))
             .data("normal_ppm_above", move |one| fit(one, Capability::ppm_above))
-            .data("guard", |one| Cell::data(one.inspection.as_ref().and_then(|of| of.guard)))
+            .data("guard", |one| Cell::data(one.distribution.inspection.as_ref().and_then(|of| of.guard)))
             .data("false_accept", |one| Cell::data(risk(one, |of| of.false_accept)))
             .data("false_reject", |one| Cell::data(risk(one, |of| of.false_reject)))
             .labels(|one| one.characteristic.labels())
@@ -143,5 +145,5 @@ impl Report {
 
 /// Returns a probability from the inspection risks, or None if there is no inspection.
 fn risk(one: &CharacteristicAnalysis, share: fn(&InspectionRisks) -> Option<EstimatedShare>) -> Option<f64> {
-    Some(share(one.inspection.as_ref()?)?.value)
+    Some(share(one.distribution.inspection.as_ref()?)?.value)
 }

@@ -49,19 +49,19 @@ pub(crate) trait KnownWorstCaseFigures {
 
 impl KnownWorstCaseFigures for CharacteristicAnalysis {
     fn known_worst_case(&self) -> Option<KnownWorstCase> {
-        let found = self.extremes.as_ref().map(|found| [found.least.value, found.greatest.value]);
+        let found = self.range.extremes.as_ref().map(|found| [found.least.value, found.greatest.value]);
         let of = |kind, ends: [f64; 2]| KnownWorstCase { kind, ends, texts: self.shown_ends(ends) };
         match (self.proven_worst_case(), found) {
             (Some(known), _) => Some(known),
             (None, Some(found)) => Some(of(WorstCaseKind::Found, found)),
-            (None, None) => Some(of(WorstCaseKind::Linear, self.worst_case?)),
+            (None, None) => Some(of(WorstCaseKind::Linear, self.range.worst_case?)),
         }
     }
 
     fn proven_worst_case(&self) -> Option<KnownWorstCase> {
         let kind = WorstCaseKind::Proven;
         if self.constant {
-            let ends = self.worst_case?;
+            let ends = self.range.worst_case?;
             return Some(KnownWorstCase { kind, ends, texts: self.shown_ends(ends) });
         }
         let proof = self.proof().filter(|proof| proof.proven)?;
@@ -70,11 +70,11 @@ impl KnownWorstCaseFigures for CharacteristicAnalysis {
     }
 
     fn is_shown_as_linear(&self, proven: &KnownWorstCase) -> bool {
-        self.worst_case.is_some_and(|linear| outward(linear, self.scale(), None) == proven.texts)
+        self.range.worst_case.is_some_and(|linear| outward(linear, self.scale(), None) == proven.texts)
     }
 
     fn is_linear(&self, proven: &KnownWorstCase) -> bool {
-        let Some(linear) = self.worst_case else { return false };
+        let Some(linear) = self.range.worst_case else { return false };
         let size = proven.ends.iter().chain(&linear).fold(linear[1] - linear[0], |size, end| size.max(end.abs()));
         proven.ends.iter().zip(linear).all(|(proven, linear)| (proven - linear).abs() <= SAME * size)
     }

@@ -17,12 +17,12 @@ pub(crate) const ROUNDING: f64 = 1e-12;
 
 /// Sentence on the source of the yield and its error. A proof is exact in every printed digit, so its rounding is left out.
 pub(crate) fn source(one: &CharacteristicAnalysis) -> Option<String> {
-    let source = one.yield_source?;
+    let source = one.distribution.yield_source?;
     let error = one.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
     let error = match (source, error) {
         // Rounding is negligible compared with the uncertainty of measured samples, and beside a proof.
         (YieldSource::Proof, Some(error)) if error < ROUNDING => String::new(),
-        (_, Some(error)) if one.sampling.is_some() && error < ROUNDING => String::new(),
+        (_, Some(error)) if one.evidence.sampling.is_some() && error < ROUNDING => String::new(),
         (_, Some(error)) if error > 0.0 => format!(", ± {} %", significant(100.0 * error, 2)),
         (YieldSource::Proof, _) | (_, Some(_)) => String::new(),
         (_, None) => ", error unknown".to_owned(),
@@ -32,10 +32,10 @@ pub(crate) fn source(one: &CharacteristicAnalysis) -> Option<String> {
 
 /// Sentence on the Pearson fit, or None if its yield is the printed one or nearly so.
 pub(crate) fn pearson_fit(one: &CharacteristicAnalysis) -> Option<String> {
-    one.yield_source.filter(|source| *source != YieldSource::Pearson)?;
+    one.distribution.yield_source.filter(|source| *source != YieldSource::Pearson)?;
     let rejected = |below: Option<f64>, above: Option<f64>| 1e-6 * (below.unwrap_or(0.0) + above.unwrap_or(0.0));
     let own = rejected(one.ppm_below(), one.ppm_above());
-    let fit = one.pearson.as_ref().map(|fit: &Capability| rejected(fit.ppm_below(), fit.ppm_above()))?;
+    let fit = one.evidence.pearson.as_ref().map(|fit: &Capability| rejected(fit.ppm_below(), fit.ppm_above()))?;
     let differs = (fit - own).abs() > DIFFERENT * fit.max(own);
     let words = "its four moments do not determine the tails";
     differs.then(|| format!("a Pearson fit would say: yield {} ({words})", unrejected(fit)))
@@ -62,7 +62,7 @@ fn time(seconds: f64) -> String {
 
 /// Condition under which a yield by the surface holds. Empty for any other basis.
 pub(crate) fn condition(one: &CharacteristicAnalysis) -> String {
-    let checks = one.verification.as_ref().filter(|of| of.unseen.is_some());
+    let checks = one.evidence.verification.as_ref().filter(|of| of.unseen.is_some());
     match (one.bases().yield_, checks) {
         (Some(FigureBasis::Surface), Some(checks)) if checks.lost_share.is_some_and(|lost| lost > 0.0) => {
             format!("; the model has no value at some of the {} check points", checks.points)

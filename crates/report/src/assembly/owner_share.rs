@@ -90,7 +90,7 @@ fn interactions(one: &CharacteristicAnalysis) -> HashMap<String, f64> {
     if one.is_of_model() {
         return halves;
     }
-    for pair in one.interactions.iter() {
+    for pair in one.contributions.interactions.iter() {
         for name in pair.dimensions {
             *halves.entry(name.to_string()).or_insert(0.0) += 0.5 * pair.share.unwrap_or(0.0);
         }

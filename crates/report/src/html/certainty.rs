@@ -54,7 +54,7 @@ pub(super) fn section(rows: &[Row], titles: [&str; 3], words: &str) -> String {
 /// Rows of an analysis, beside the values by points of the model. Those of a simulation are preferred if there is one.
 pub(super) fn analysed(one: &CharacteristicAnalysis, simulated: Option<&SimulatedCharacteristic>) -> Vec<Row> {
     let estimate = one.error_estimate.as_ref();
-    let by_model = one.verification.as_ref();
+    let by_model = one.evidence.verification.as_ref();
     let figure = |place: usize| by_model.and_then(|found| found.figures[place]).map(|found| (found.value, found.error));
     let sampled = |of: Option<Estimate>| of.and_then(|of| Some((of.value, of.standard_error?)));
     let model = match simulated {

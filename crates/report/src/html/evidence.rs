@@ -98,9 +98,9 @@ struct Tail<'l> {
 /// Draws the reject rate near each limit on a logarithmic scale: the Pearson fit as a line, surface and model as marks at the limit.
 fn tails(one: &CharacteristicAnalysis) -> Option<String> {
     let Some(Law::Pearson(law)) = one.fitted() else { return None };
-    let of_surface = one.surface_law.as_ref();
-    let by_model = one.verification.as_ref().map_or([None, None], |found| found.beyond);
-    let seen = one.verification.as_ref().and_then(|found| found.tails.as_ref());
+    let of_surface = one.evidence.surface_law.as_ref();
+    let by_model = one.evidence.verification.as_ref().map_or([None, None], |found| found.beyond);
+    let seen = one.evidence.verification.as_ref().and_then(|found| found.tails.as_ref());
     let seen = seen.map_or([&[][..], &[]], |tails| [&tails.below[..], &tails.above[..]]);
     let all = [
         ("lower", one.lower(), false, of_surface.and_then(|law| law.below), by_model[0], seen[0]),
@@ -346,7 +346,7 @@ fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Optio
         }
         found.extend(row.mean_shift.map(|moved| (row.dimension.clone(), moved, "curvature".to_owned())));
     }
-    for pair in one.interactions.iter() {
+    for pair in one.contributions.interactions.iter() {
         let name = || pair.dimensions.join(" × ");
         found.extend(pair.mean_shift.map(|moved| (name(), moved, "correlation".to_owned())));
     }
@@ -402,7 +402,7 @@ fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option
     let curved = |row: &&&Sensitivity| row.curvature_share.is_some_and(|share| share > 1e-6);
     if !(2..=LINKS).contains(&rows.len())
         || rows.iter().any(|row| curved(&row))
-        || one.interactions.iter().any(|pair| pair.mixed != Some(0.0))
+        || one.contributions.interactions.iter().any(|pair| pair.mixed != Some(0.0))
     {
         return None;
     }

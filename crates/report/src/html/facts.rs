@@ -29,16 +29,16 @@ pub(super) fn facts(one: &CharacteristicAnalysis) -> String {
         for (name, side) in ["Rejects below", "Rejects above"].into_iter().zip(one.rejects().by_side()) {
             side.into_iter().for_each(|ppm| row(name, ppm, String::new(), false));
         }
-        let of = |figure: fn(&Capability) -> Option<f64>| one.capability.as_ref().and_then(figure);
+        let of = |figure: fn(&Capability) -> Option<f64>| one.distribution.capability.as_ref().and_then(figure);
         // Indices of measured values are performance indices (Pp, Ppk), not those of a process in control (Cp, Cpk).
-        let [cp, cpk] = if one.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
+        let [cp, cpk] = if one.evidence.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
         let mut index_row = |name: &str, value: Option<f64>, key| {
             value.into_iter().for_each(|value| row(name, index(value), String::new(), key))
         };
         index_row(cpk, of(|of| of.cpk), true);
         index_row(cp, of(|of| of.cp), false);
         if let Some(value) = of(|of| of.cpk_percentile) {
-            let error = one.quantiles.and_then(|of| of.cpk_percentile_error);
+            let error = one.distribution.quantiles.and_then(|of| of.cpk_percentile_error);
             row(&format!("{cpk}, by quantiles"), index_with(value, error), String::new(), false);
         }
     }

@@ -209,7 +209,8 @@ fn of_model_text(share: &Share) -> String {
 
 /// True if the dimension varies together with another one.
 fn varies_with(one: &CharacteristicAnalysis, dimension: &str) -> bool {
-    let mut together = one.indices.iter().flat_map(|of| &of.factors).flat_map(|factor| &factor.dimensions);
+    let mut together =
+        one.contributions.indices.iter().flat_map(|of| &of.factors).flat_map(|factor| &factor.dimensions);
     together.any(|of| of == dimension)
 }
 
@@ -234,7 +235,7 @@ fn of_surface(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> V
             reach: Some(reach(row, of)),
         })
     });
-    let joint = one.interactions.iter().filter_map(|pair| {
+    let joint = one.contributions.interactions.iter().filter_map(|pair| {
         let value = pair.share?;
         let name = pair.dimensions.join(" \u{d7} ");
         let alone = !pair.dimensions.iter().any(|dimension| varies_with(one, dimension));
@@ -324,7 +325,7 @@ enum Open {
 /// Returns the unexplained part, or None if it is too small for a row.
 fn unresolved(one: &CharacteristicAnalysis) -> Option<Open> {
     let seen = |share: &f64| *share > 0.5 * NEWS;
-    match (one.left_out_share, one.left()) {
+    match (one.contributions.left_out_share, one.left()) {
         (Some(left_out), _) if seen(&left_out) => Some(Open::LeftOut(left_out)),
         (_, Some(left)) => Some(left).filter(seen).map(Open::ByPoints),
         (Some(_), None) => None,

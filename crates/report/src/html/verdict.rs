@@ -135,7 +135,7 @@ impl<'r> JudgedCharacteristic<'r> {
             yield_: one.yield_(),
             interval: one.yield_interval(),
             ppm: [one.ppm_below(), one.ppm_above()],
-            cpk: one.capability.as_ref().and_then(|of: &Capability| of.cpk),
+            cpk: one.distribution.capability.as_ref().and_then(|of: &Capability| of.cpk),
             worst: one.known_worst_case(),
             driver: all.max_by(|a, b| a.1.total_cmp(&b.1)),
             ..Self::of(one, place).rejecting(one.rejects())

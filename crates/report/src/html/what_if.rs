@@ -162,9 +162,9 @@ fn endless(found: &CharacteristicAnalysis) -> Option<String> {
 
 /// Reject rates of the report below and above.
 fn reported(found: &CharacteristicAnalysis) -> [Option<Reported>; 2] {
-    let values = found.capability.map_or([None; 2], |of| [of.below, of.above]);
+    let values = found.distribution.capability.map_or([None; 2], |of| [of.below, of.above]);
     [0, 1].map(|side| {
-        let interval = found.reject_intervals[side];
+        let interval = found.distribution.reject_intervals[side];
         values[side].map(|value| Reported { value, low: interval.map(|of| of[0]), high: interval.map(|of| of[1]) })
     })
 }
@@ -205,7 +205,7 @@ fn why_fit(
     if surrogate.interactions.pairs().iter().any(|&(j, k, product)| product != 0.0 && !(parabola(j) && parabola(k))) {
         return Some(INTERACT);
     }
-    match found.surface_law {
+    match found.evidence.surface_law {
         Some(law) if law.branch != Branch::Sampled => None,
         Some(_) => Some("the tail of a dimension is too heavy"),
         None => Some("there is no law of the surface"),
@@ -350,8 +350,8 @@ impl Wanted {
             counted: why_fit == Some(INTERACT) && limits.exist(),
             why_fit,
             rejects: reported(found),
-            interval: found.yield_interval().filter(|_| !found.unfinished),
-            source: found.yield_source.map(YieldSource::words),
+            interval: found.yield_interval().filter(|_| !found.missing.unfinished),
+            source: found.distribution.yield_source.map(YieldSource::words),
             errors: [error(|of| of.mean), error(|of| of.sigma), error(|of| of.skewness), error(|of| of.kurtosis)],
             screened: fit.as_ref().map_or(0, |fit| fit.screened),
         }

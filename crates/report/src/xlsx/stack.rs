@@ -128,7 +128,7 @@ fn figures(row: &StackRow) -> Figures {
 /// Returns the part of the value at the middle of all bands that no dimension contributes, or None if it is 0 or unknown.
 fn constant(rows: &[StackRow], one: &CharacteristicAnalysis) -> Option<f64> {
     let parts: Vec<f64> = rows.iter().map(|row| row.slope.unwrap_or(f64::NAN) * figures(row).middle).collect();
-    let constant = one.middle? - parts.iter().sum::<f64>();
+    let constant = one.linear.middle? - parts.iter().sum::<f64>();
     // A remainder of the size of rounding errors is left out.
     let scale = parts.iter().map(|part| part.abs()).sum::<f64>();
     Some(constant).filter(|constant| constant.abs() > ROUNDING * scale)
@@ -318,7 +318,7 @@ fn totals(
     line += 1;
     let formulas = TotalFormulas::new(page, line, &inputs, all);
     // Dimensions that vary together are in no formula.
-    let alone = near(formulas.rss, one.rss, 0.0);
+    let alone = near(formulas.rss, one.linear.rss, 0.0);
     let mut straight = None;
     for total in &stack.totals {
         let of_moments = matches!(total.kind, TotalKind::FirstOrder | TotalKind::SecondOrder);
@@ -451,7 +451,7 @@ impl TotalFormulas {
 
 /// Cpk where there are limits and it is known.
 fn cpk(one: &CharacteristicAnalysis) -> Option<f64> {
-    one.capability.as_ref()?.cpk
+    one.distribution.capability.as_ref()?.cpk
 }
 
 /// Writes a total by formulas.

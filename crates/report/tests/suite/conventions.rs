@@ -25,15 +25,15 @@ fn a_printed_stack_of_a_motor() {
         lines.collect::<String>()
     );
     let found = one(&text);
-    let [lower, upper] = found.worst_case.unwrap();
-    let ours = [0.5 * (upper - lower), found.rss.unwrap(), found.inflated_rss.unwrap()];
+    let [lower, upper] = found.range.worst_case.unwrap();
+    let ours = [0.5 * (upper - lower), found.linear.rss.unwrap(), found.linear.inflated_rss.unwrap()];
     for (found, key) in ours.into_iter().zip(["worst case", "rss", "modified rss"]) {
         let printed = &case["printed"][key];
         close(found, printed["value"].as_f64().unwrap(), printed["tolerance"].as_f64().unwrap(), 1.0);
     }
     // Slopes of 1 from differences of values of 11 are accurate to 1e-12.
-    relative(found.inflated_rss.unwrap(), case["exact"]["modified_rss"].as_f64().unwrap(), 1e-11);
-    relative(found.mean_shift_rss.unwrap(), case["exact"]["mean_shift_rss"].as_f64().unwrap(), 1e-11);
+    relative(found.linear.inflated_rss.unwrap(), case["exact"]["modified_rss"].as_f64().unwrap(), 1e-11);
+    relative(found.linear.mean_shift_rss.unwrap(), case["exact"]["mean_shift_rss"].as_f64().unwrap(), 1e-11);
 }
 
 /// Seven processes, one of them off by a quarter of its half-width: cp 2 and cpk 1.5.
@@ -52,7 +52,7 @@ fn a_printed_six_sigma_stack() {
         )
     };
     let found = one(&text(""));
-    let effective = found.six_sigma.unwrap();
+    let effective = found.linear.six_sigma.unwrap();
     // Slopes of 1 from differences of values of 7 are accurate to 1e-12.
     relative(effective, case["exact"]["effective sigma"].as_f64().unwrap(), 1e-11);
     relative(4.5 * effective, case["exact"]["half width"].as_f64().unwrap(), 1e-11);
@@ -79,7 +79,7 @@ fn a_printed_calibration_of_a_gauge_block() {
     let moments = found.moments.unwrap();
     let ([mean, of_mean], [sigma, of_sigma]) = (printed("mean"), printed("sigma"));
     assert!((moments.mean() - mean).abs() <= of_mean && (moments.sigma() - sigma).abs() <= of_sigma, "{moments:?}");
-    for interval in [found.coverage.unwrap().equal_tails, found.coverage.unwrap().shortest] {
+    for interval in [found.distribution.coverage.unwrap().equal_tails, found.distribution.coverage.unwrap().shortest] {
         for (end, printed) in interval.into_iter().zip(case["printed"]["99 % interval"].as_array().unwrap()) {
             // Printed to 1 nm. 65 536 points have an error of 0.7 nm at a tail of 0.5 %. The width of the shortest interval is flat about
             // its place.
@@ -88,7 +88,7 @@ fn a_printed_calibration_of_a_gauge_block() {
     }
     // The printed ends are whole nanometres. Half a nanometre changes a share of 99 % by 4e-4, and 65 536 counted points have a similar
     // error.
-    let law = found.surface_law.unwrap();
+    let law = found.evidence.surface_law.unwrap();
     close(1.0 - law.below.unwrap().value - law.above.unwrap().value, 0.99, 1.5e-3, 1.0);
 }
 
@@ -103,7 +103,7 @@ fn factors_and_shifts_of_single_dimensions() {
     };
     let found = |a: &str, all: &str| {
         let found = one(&text(a, all));
-        [found.inflated_rss.unwrap(), found.mean_shift_rss.unwrap()]
+        [found.linear.inflated_rss.unwrap(), found.linear.mean_shift_rss.unwrap()]
     };
     let rest = |a: f64, b: f64| f64::hypot((1.0 - a) * 0.3, (1.0 - b) * 0.4);
     for (a, all, inflated, shifted) in [
@@ -151,10 +151,10 @@ fn a_process_places_the_mean() {
         let text = format!(
             "[dimensions]\na = {{ nominal = 10, tolerance = [-0.4, 0.8], {line} }}\n[characteristics]\ny = {{ formula = \"2*a\" }}\n"
         );
-        relative(one(&text).six_sigma.unwrap(), 2.0 * effective, 1e-11);
+        relative(one(&text).linear.six_sigma.unwrap(), 2.0 * effective, 1e-11);
     }
     let centred = "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\n[characteristics]\ny = { formula = \"a\" }\n";
-    assert_eq!(one(centred).six_sigma, None);
+    assert_eq!(one(centred).linear.six_sigma, None);
 }
 
 /// Halving the tolerance keeps cp and cpk, in the problem and in the rewritten study.
@@ -415,7 +415,7 @@ fn coverage_intervals_hold_their_share() {
                  [characteristics]\ny = { formula = \"a\" }\n[analysis]\ncoverage = 0.95\n";
     let coverage = |text: &str| {
         let study = parse(text).unwrap_or_else(|error| panic!("{error}"));
-        analyze(&study.problem, &study.options).unwrap().characteristics.remove(0).coverage.unwrap()
+        analyze(&study.problem, &study.options).unwrap().characteristics.remove(0).distribution.coverage.unwrap()
     };
     let ends = |value: &serde_json::Value| [0, 1].map(|i| value[i].as_f64().unwrap());
     let exact = &case("shortest-gamma")["exact"];

@@ -85,12 +85,12 @@ proptest! {
         close(s * s, k2, 1e-12, 1.0);
         close(g * s.powi(3), k3, 1e-12, 10.0);
         close(k * s.powi(4), k4, 1e-12, 100.0);
-        prop_assert!(found.sampled.is_none());
+        prop_assert!(found.evidence.sampled.is_none());
         let own: f64 = (0..n).map(|d| found.share(d).unwrap()).sum();
-        let together: f64 = found.interactions.iter().map(|interaction| interaction.share.unwrap()).sum();
+        let together: f64 = found.contributions.interactions.iter().map(|interaction| interaction.share.unwrap()).sum();
         close(own + together, 1.0, 1e-12, 0.0);
         let shifts: f64 = found.sensitivities.iter().map(|row| row.mean_shift.unwrap()).sum::<f64>()
-            + found.interactions.iter().map(|interaction| interaction.mean_shift.unwrap()).sum::<f64>();
+            + found.contributions.interactions.iter().map(|interaction| interaction.mean_shift.unwrap()).sum::<f64>();
         close(shifts, mean, 1e-12, 1.0);
     }
 }
@@ -102,7 +102,7 @@ fn full_correlation_is_one_input() {
         let problem = Problem::new(standard(2), Closure::scalar("y", move |x| x[0] + sign * x[1])).unwrap();
         let problem = problem.correlated(&[pair("x0", "x1", value)]).unwrap();
         let found = analyze(&problem, &Method::Full.into()).unwrap().characteristics.remove(0);
-        (found.moments.unwrap().sigma(), found.rss.unwrap())
+        (found.moments.unwrap().sigma(), found.linear.rss.unwrap())
     };
     for (sign, value, sigma) in [(1.0, 1.0, 2.0), (-1.0, -1.0, 2.0), (1.0, 0.5, 3f64.sqrt())] {
         relative(of(sign, value).0, sigma, 1e-15);
@@ -146,9 +146,9 @@ fn correlated_and_independent_inputs_mix() {
     relative(s, central(2).sqrt(), 1e-13);
     relative(g, central(3) / central(2).powf(1.5), 1e-12);
     relative(k + 3.0, central(4) / central(2).powi(2), 1e-12);
-    assert!(found.sampled.is_none());
+    assert!(found.evidence.sampled.is_none());
     let shares: f64 = (0..4).map(|d| found.share(d).unwrap()).sum::<f64>()
-        + found.interactions.iter().map(|interaction| interaction.share.unwrap()).sum::<f64>();
+        + found.contributions.interactions.iter().map(|interaction| interaction.share.unwrap()).sum::<f64>();
     close(shares, 1.0, 1e-12, 0.0);
 }
 
@@ -223,7 +223,7 @@ fn sampled_moments_keep_their_standard_errors() {
         let problem = Problem::new(dimensions, Closure::scalar("y", move |x| y(x[0], x[1]))).unwrap();
         let problem = problem.correlated(&[pair("a", "b", value)]).unwrap();
         let found = &analyze(&problem, &method.into()).unwrap().characteristics[0];
-        let sampled = found.sampled.expect("not exact");
+        let sampled = found.evidence.sampled.expect("not exact");
         let expect = |f: &dyn Fn(f64) -> f64| match flat {
             true => over_two(r, |a, b| f(y(uniform(a), uniform(b)))),
             false => over_two(r, |a, b| f(y(a, b))),
@@ -243,7 +243,7 @@ fn sampled_moments_keep_their_standard_errors() {
         let plain = s * ((exact[2] + 2.0) / 4.0 / sampled.samples as f64).sqrt();
         assert!(sampled.sigma < plain, "case {index}: {} against {plain}", sampled.sigma);
         let shares: f64 = (0..2).map(|d| found.share(d).unwrap()).sum::<f64>()
-            + found.interactions.iter().map(|interaction| interaction.share.unwrap()).sum::<f64>();
+            + found.contributions.interactions.iter().map(|interaction| interaction.share.unwrap()).sum::<f64>();
         close(shares, 1.0, 1e-12, 0.0);
         if index == 0 {
             // A linear function needs no sample for its variance.

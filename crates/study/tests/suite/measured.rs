@@ -339,7 +339,7 @@ fn coverage(truth: &PearsonLaw, n: usize, samples: usize) -> [[usize; 4]; 2] {
         let measured = Measured::new(&values).unwrap();
         let found = analyze(&problem(dimension(Arc::new(measured))), &Method::Full.into()).unwrap();
         for ((held, exact), found) in held.iter_mut().zip(&exact.characteristics).zip(&found.characteristics) {
-            let (exact, found) = (exact.moments.unwrap(), found.sampling.as_ref().unwrap());
+            let (exact, found) = (exact.moments.unwrap(), found.evidence.sampling.as_ref().unwrap());
             let truths = [exact.mean(), exact.sigma(), exact.skewness().unwrap(), exact.kurtosis().unwrap()];
             let intervals = [found.mean, found.sigma, found.skewness, found.kurtosis];
             for ((held, truth), interval) in held.iter_mut().zip(truths).zip(intervals) {
@@ -388,7 +388,13 @@ fn intervals_are_those_of_another_implementation() {
     for (case, law) in oracle().into_iter().take(2) {
         let x = Dimension::distributed("x", 0.0, None, Arc::new(law)).unwrap();
         let problem = Problem::new([x], Closure::scalar("y", |x| x[0])).unwrap();
-        let found = analyze(&problem, &Method::SecondOrder.into()).unwrap().characteristics.remove(0).sampling.unwrap();
+        let found = analyze(&problem, &Method::SecondOrder.into())
+            .unwrap()
+            .characteristics
+            .remove(0)
+            .evidence
+            .sampling
+            .unwrap();
         assert_eq!((found.resamples, found.level, found.rejected, found.cpk), (1000, 0.95, None, None));
         for (name, interval) in
             [("mean", found.mean), ("sigma", found.sigma), ("skewness", found.skewness), ("kurtosis", found.kurtosis)]
@@ -508,22 +514,22 @@ fn intervals_hang_on_the_seed_alone() {
     assert_eq!(on(1).characteristics, first.characteristics);
     assert_eq!(on(3).characteristics, first.characteristics);
     assert_eq!(of(Some(Options::SEED)).characteristics, first.characteristics);
-    let interval = |seed| of(seed).characteristics.remove(0).sampling.unwrap();
+    let interval = |seed| of(seed).characteristics.remove(0).evidence.sampling.unwrap();
     assert_ne!(interval(Some(2)).mean, interval(None).mean);
     let [gap, other] = &first.characteristics[..] else { panic!("two characteristics") };
-    let sampling = gap.sampling.as_ref().unwrap();
+    let sampling = gap.evidence.sampling.as_ref().unwrap();
     assert_eq!(sampling.samples, [("x".to_owned(), 200)]);
     let [low, high] = sampling.rejected.map(|[low, high]| [1.0 - high, 1.0 - low]).unwrap();
-    let kept = gap.capability.unwrap().yield_().unwrap();
+    let kept = gap.distribution.capability.unwrap().yield_().unwrap();
     assert!(low < kept && kept < high && 0.9 < low && high < 1.0, "{low} {kept} {high}");
-    let cpk = gap.capability.unwrap().cpk.unwrap();
+    let cpk = gap.distribution.capability.unwrap().cpk.unwrap();
     assert!(sampling.cpk.unwrap()[0] < cpk && cpk < sampling.cpk.unwrap()[1]);
     // `other` does not declare its dependencies. Its interval has no width, since it does not depend on measured values.
-    let nothing = other.sampling.as_ref().map(|sampling| sampling.sigma.unwrap());
+    let nothing = other.evidence.sampling.as_ref().map(|sampling| sampling.sigma.unwrap());
     assert!(nothing.is_none_or(|[low, high]| (high - low).abs() < 1e-12), "{nothing:?}");
     let known = Problem::new([Dimension::normal("x", 1.0, 0.1).unwrap()], Closure::scalar("y", |x| x[0])).unwrap();
     let known = analyze(&known, &Method::Full.into()).unwrap();
-    assert_eq!((known.run.seed, &known.characteristics[0].sampling), (None, &None));
+    assert_eq!((known.run.seed, &known.characteristics[0].evidence.sampling), (None, &None));
 }
 
 /// A fitted distribution with infinite moments in some resamples. A straight characteristic does not need them, but a curved one does.
@@ -538,14 +544,15 @@ fn resamples_without_moments_leave_their_intervals_unknown() {
     let y = Closure::new(["straight", "curved"], |x| [x[0], x[0] + 0.05 * x[0] * x[0]]);
     let analysis = analyze(&Problem::new([x], y).unwrap(), &Method::SecondOrder.into()).unwrap();
     let [straight, curved] = &analysis.characteristics[..] else { panic!("two characteristics") };
-    let (straight, curved) = (straight.sampling.as_ref().unwrap(), curved.sampling.as_ref().unwrap());
+    let (straight, curved) = (straight.evidence.sampling.as_ref().unwrap(), curved.evidence.sampling.as_ref().unwrap());
     assert!(straight.kurtosis.is_some() && straight.skewness.is_some());
     assert!(curved.mean.is_some() && curved.sigma.is_some());
     assert_eq!(curved.kurtosis, None);
     // For a straight characteristic the fitted distribution and the values have the same four moments in every resample.
     let x = Dimension::distributed("x", 0.0, None, empirical(&values)).unwrap();
     let same = Problem::new([x], Closure::new(["straight"], |x| [x[0]])).unwrap();
-    let same = analyze(&same, &Method::SecondOrder.into()).unwrap().characteristics.remove(0).sampling.unwrap();
+    let same =
+        analyze(&same, &Method::SecondOrder.into()).unwrap().characteristics.remove(0).evidence.sampling.unwrap();
     for (a, b) in [(same.sigma, straight.sigma), (same.kurtosis, straight.kurtosis)] {
         for (a, b) in a.unwrap().into_iter().zip(b.unwrap()) {
             relative(a, b, 1e-9);
@@ -562,7 +569,7 @@ fn large_problems_are_resampled_less() {
         let dimensions = std::iter::once(x).chain(sensitol_testing::standard(n - 1));
         let y = Closure::scalar("y", |x| x.iter().sum::<f64>().powi(2));
         let analysis = analyze(&Problem::new(dimensions, y).unwrap(), &Method::Full.into()).unwrap();
-        analysis.characteristics[0].sampling.as_ref().unwrap().resamples
+        analysis.characteristics[0].evidence.sampling.as_ref().unwrap().resamples
     };
     assert_eq!((resamples(20), resamples(160)), (1000, 731));
 }
@@ -752,7 +759,7 @@ fn the_example_is_analysed() {
     // The tilt moves the mean by a fraction of 1e-5. It gives 2 % of the variance, of which its parabola misses some 1e-3.
     relative(clearance.moments.unwrap().mean(), 10.0075 * cosine - mean, 1e-6);
     relative(clearance.moments.unwrap().variance(), hole + variance, 1e-4);
-    let [low, high] = clearance.sampling.as_ref().unwrap().mean.unwrap();
+    let [low, high] = clearance.evidence.sampling.as_ref().unwrap().mean.unwrap();
     // Only the standard error of the pin's mean contributes: 1.96 of it on either side, slightly skewed.
     relative(high - low, 2.0 * 1.96 * (variance / n).sqrt(), 0.15);
 }

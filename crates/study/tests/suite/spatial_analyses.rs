@@ -150,7 +150,7 @@ fn searched_extremes_are_the_proven_ones() {
     let options = Options::from(Method::SecondOrder).with_extremes(true);
     let [a, b] = [&space, &formula].map(|study| {
         let one = analyze(&study.problem, &options).unwrap().characteristics.remove(0);
-        one.extremes.unwrap()
+        one.range.extremes.unwrap()
     });
     assert!(b.proven() && !a.proven());
     relative(a.least.value, b.least.value, 1e-10);

@@ -423,7 +423,7 @@ fn models_and_formulas_work_together() {
     relative(force.nominal.unwrap(), 12556.9361 / 4.0, 1e-8);
     relative(per_mount.nominal.unwrap(), 12556.9361 / 8.0, 1e-8);
     assert_eq!(force.sensitivities[1].first, Some(0.0), "the force does not know the mount");
-    assert_eq!(force.possible_interactions, 0);
+    assert_eq!(force.contributions.possible_interactions, 0);
 }
 
 #[test]

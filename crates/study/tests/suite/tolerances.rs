@@ -193,16 +193,16 @@ fn a_position_is_two_dimensions() {
     let [x, along, square] = &analysis.characteristics[..] else { panic!("three characteristics") };
     let half = |interval: Option<[f64; 2]>| interval.map(|[lower, upper]| 0.5 * (upper - lower)).unwrap();
     // Differences of values near 100 and 4000 have rounding errors of 1e-13 of these. The half-widths are near 1 and 10.
-    close(half(x.worst_case), 0.1 + 0.05, 1e-11, 1.0);
-    close(half(along.worst_case), 0.1 * 5.0 + 0.05 * 13.0 + 0.3, 1e-11, 1.0);
-    close(along.rss.unwrap(), (0.5f64.powi(2) + 0.65f64.powi(2) + 0.3f64.powi(2)).sqrt(), 1e-11, 1.0);
+    close(half(x.range.worst_case), 0.1 + 0.05, 1e-11, 1.0);
+    close(half(along.range.worst_case), 0.1 * 5.0 + 0.05 * 13.0 + 0.3, 1e-11, 1.0);
+    close(along.linear.rss.unwrap(), (0.5f64.powi(2) + 0.65f64.powi(2) + 0.3f64.powi(2)).sqrt(), 1e-11, 1.0);
     let sigma = (25.0 * (0.1f64 / 3.0).powi(2) + 169.0 * (0.05f64 / 6.0).powi(2) + 0.1f64.powi(2)).sqrt();
     close(along.moments.unwrap().sigma(), sigma, 1e-11, 1.0);
     // x^2 + y^2 with means m: variance 4 s^2 |m|^2 + 4 s^4, mean |m|^2 + 2 s^2.
     let (s2, m2) = ((0.1f64 / 3.0).powi(2), 50.0f64.powi(2) + 30.0f64.powi(2));
     close(square.moments.unwrap().mean(), m2 + 2.0 * s2, 1e-13, 1.0);
     close(square.moments.unwrap().sigma(), (4.0 * s2 * m2 + 4.0 * s2 * s2).sqrt(), 1e-9, 1.0);
-    close(half(square.worst_case), 0.1 * 2.0 * m2.sqrt(), 1e-9, 1.0);
+    close(half(square.range.worst_case), 0.1 * 2.0 * m2.sqrt(), 1e-9, 1.0);
 }
 
 /// A program with the inputs `hole_x` and `hole_y` receives both coordinates.
@@ -220,7 +220,7 @@ fn a_program_is_given_both_coordinates() {
     let found =
         &analyze(&Study::read(&study).unwrap().problem, &Method::SecondOrder.into()).unwrap().characteristics[0];
     assert_eq!(found.nominal, Some(30.0));
-    let [lower, upper] = found.worst_case.unwrap();
+    let [lower, upper] = found.range.worst_case.unwrap();
     close(upper - lower, 2.0 * 0.1 * 5.0, 1e-11, 1.0);
 }
 
@@ -253,16 +253,16 @@ proptest! {
         let ends = |pick: fn(f64, f64) -> f64| -> f64 {
             (bands.iter().zip(&slopes)).map(|((lower, width), b)| pick(b * lower, b * (lower + width))).sum()
         };
-        let [lower, upper] = found.worst_case.unwrap();
+        let [lower, upper] = found.range.worst_case.unwrap();
         // The search of the edge in steps of 0.1 degrees misses up to (pi/3600)^2/2 of the radius, 4e-7.
         prop_assert!((lower - (nominal + ends(f64::min) - zone)).abs() < 1e-5);
         prop_assert!((upper - (nominal + ends(f64::max) + zone)).abs() < 1e-5);
         let squares: f64 = (bands.iter().zip(&slopes)).map(|((_, width), b)| (0.5 * b * width).powi(2)).sum();
         let rss = (squares + radius * radius * (slopes[3].powi(2) + slopes[4].powi(2))).sqrt();
-        prop_assert!((found.rss.unwrap() - rss).abs() < 1e-11);
-        prop_assert!((found.inflated_rss.unwrap() - 1.5 * rss).abs() < 1e-11);
-        prop_assert!((found.mean_shift_rss.unwrap() - 0.5 * (0.5 * (upper - lower) + rss)).abs() < 1e-11);
-        prop_assert!((found.middle.unwrap() - 0.5 * (lower + upper)).abs() < 1e-11);
+        prop_assert!((found.linear.rss.unwrap() - rss).abs() < 1e-11);
+        prop_assert!((found.linear.inflated_rss.unwrap() - 1.5 * rss).abs() < 1e-11);
+        prop_assert!((found.linear.mean_shift_rss.unwrap() - 0.5 * (0.5 * (upper - lower) + rss)).abs() < 1e-11);
+        prop_assert!((found.linear.middle.unwrap() - 0.5 * (lower + upper)).abs() < 1e-11);
     }
 }
 
@@ -275,8 +275,8 @@ fn named_totals_of_a_published_kind() {
     let found = &analyze(&gap, &Method::SecondOrder.into()).unwrap().characteristics[0];
     let shifts = 0.05 + 0.10 + 2.0 * 0.15;
     let rest = (0.05f64.powi(2) + 0.10f64.powi(2) + 0.30f64.powi(2)).sqrt();
-    close(found.mean_shift_rss.unwrap(), shifts + rest, 1e-12, 1.0);
-    close(found.rss.unwrap(), 2.0 * rest, 1e-12, 1.0);
-    close(found.inflated_rss.unwrap(), 3.0 * rest, 1e-12, 1.0);
-    assert_eq!(found.middle, found.nominal);
+    close(found.linear.mean_shift_rss.unwrap(), shifts + rest, 1e-12, 1.0);
+    close(found.linear.rss.unwrap(), 2.0 * rest, 1e-12, 1.0);
+    close(found.linear.inflated_rss.unwrap(), 3.0 * rest, 1e-12, 1.0);
+    assert_eq!(found.linear.middle, found.nominal);
 }
