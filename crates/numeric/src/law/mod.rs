@@ -261,6 +261,8 @@ pub struct SurfaceLaw {
     rounding: f64,
     /// Largest probability of a single value that is neither listed nor summed separately; 0 if there is none.
     jump: f64,
+    /// Distance from the edge of a cluster of values within which a tail is not resolved. None if clusters are wide, or if there are none.
+    blur: Option<f64>,
 }
 
 /// Greatest number of values with a probability of their own that are summed separately beside a density.
@@ -304,9 +306,10 @@ impl SurfaceLaw {
         let own = Arc::clone(&surface);
         let correlated = correlation.clone();
         let made = move |kind: Kind, range: [f64; 2], [mean, sigma]: [f64; 2], jump: f64| {
+            let blur = crate::law::discrete_law::blur(&own, sigma);
             let step = own.inputs.iter().all(|input| input.is_discrete());
             let (surface, correlation) = (own, correlated);
-            Self { surface, given, zones, correlation, kind, range, mean, sigma, step, rounding, jump }
+            Self { surface, given, zones, correlation, kind, range, mean, sigma, step, rounding, jump, blur }
         };
         if surface.len() == 0 {
             let at = surface.centre;
@@ -385,7 +388,20 @@ impl SurfaceLaw {
         let steps = Steps::new(values);
         let ([mean, sigma], range, given) = (steps.moments(), steps.range(), Arc::clone(&surface));
         let (kind, zones) = (Kind::Steps(steps), Vec::new());
-        Self { surface, given, zones, correlation, kind, range, mean, sigma, step: true, rounding, jump: 0.0 }
+        Self {
+            surface,
+            given,
+            zones,
+            correlation,
+            kind,
+            range,
+            mean,
+            sigma,
+            step: true,
+            rounding,
+            jump: 0.0,
+            blur: None,
+        }
     }
 
     /// Probability strictly below a limit. A value on the limit keeps it.
@@ -415,6 +431,15 @@ impl SurfaceLaw {
         if outside || whole {
             return LawFigure::proven(f64::from(u8::from(whole)));
         }
+        let found = self.inner_tail(y, tail);
+        let Some(blur) = self.blur else { return found };
+        // The tail falls outward, so that it lies between those on both sides of a cluster.
+        let [inward, outward] = [-blur, blur].map(|off| self.inner_tail(y + tail.sign() * off, tail));
+        LawFigure { error: found.error.max(inward.value - outward.value), ..found }
+    }
+
+    /// Tail at a limit inside the range.
+    fn inner_tail(&self, y: f64, tail: LawTail) -> LawFigure {
         match &self.kind {
             Kind::Point(_) => LawFigure::proven(0.0),
             Kind::Steps(steps) => steps.tail(y, tail),
