@@ -10,7 +10,7 @@ use crate::compare::CompareError;
 use crate::method::MethodError;
 use crate::problem::ProblemError;
 use crate::rare::RareError;
-use crate::simulation::SimulationError;
+use crate::simulation::{ShardError, SimulationError};
 use crate::sweep::SweepError;
 use crate::warning::Advice;
 use sensitol_numeric::characteristic::LimitsError;
@@ -62,6 +62,9 @@ pub enum Error {
     /// The problem cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A sample cannot be divided or merged.
+    #[error(transparent)]
+    Shard(#[from] ShardError),
     /// A cost is impossible.
     #[error(transparent)]
     Cost(#[from] CostError),

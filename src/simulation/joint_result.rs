@@ -1,5 +1,7 @@
 //! Results of a sample for several characteristics at once: joint yield and correlations.
 
+use serde::{Deserialize, Serialize};
+
 use crate::assembly::{Responses, all_finite};
 use crate::estimate::{OutputCorrelation, REPLICATES, pairs, student};
 use crate::problem::Problem;
@@ -15,7 +17,7 @@ use sensitol_numeric::verdict;
 type Parts<T> = [T; REPLICATES];
 
 /// Sums of the parts of a sample.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Together {
     /// Points at which every characteristic has a value.
     count: Parts<f64>,

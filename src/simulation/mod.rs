@@ -8,11 +8,13 @@ mod inspection;
 mod joint_result;
 mod json;
 mod measured_interval;
+mod portions;
 mod rare_switch_side;
 mod replicate_error;
 mod replicate_moments;
 mod sample_groups;
 mod serialisation;
+mod shard;
 mod surface_difference;
 mod surrogates;
 mod tally;
@@ -23,12 +25,14 @@ pub(crate) use characteristic::{BINS, CHOICE};
 pub use characteristic::{Histogram, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 pub use indices::{IndexEstimate, SampledFactor};
 pub use sensitol_numeric::sampling::{Estimate, Sampler, SamplingError};
+pub use shard::{Shard, ShardError, ShardSums, merge_shards, simulate_shard};
 
+use std::ops::Range;
 use std::time::Duration;
 
 use serde::Serialize;
 
-use crate::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run, near_rows};
+use crate::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run};
 use crate::estimate::OutputCorrelation;
 use crate::evaluation::{Evaluator, Restoration, Restore, at_any_size};
 use crate::method::{Method, MethodError, Options, Outcome};
@@ -38,6 +42,7 @@ use crate::simulation::sample_groups::MeasuredGroups;
 use crate::summary::RunSummary;
 use crate::warning::{Advice, Warning};
 use count::CountingScale;
+use portions::Portions;
 use sensitol_numeric::json_form::through;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::parallel::{Rooms, join};
@@ -448,61 +453,12 @@ fn drawn(
     run: &Run<'_>,
     (begun, pace): (Instant, &dyn Fn(Pace)),
 ) -> Simulation {
-    /// Duration below which the next batch has more tasks, and the factor on their number.
-    const SHORT: (Duration, usize) = (Duration::from_millis(50), 4);
     let measured = MeasuredGroups::of(problem, options.samples);
     let evaluator = Evaluator::new(problem, run).with_seed(options.seed);
     let mut tally = Tally::new(problem, control, options.sampler);
     let mut portions = Portions::new(options, problem.function().signature().costly, problem.dimensions().len());
-    let rooms = Rooms::none();
-    let room = || (Room::default(), Points::repeated(&[], 0), Responses::open(0, 0));
-    // If the number of points is known beforehand, a batch is counted while the next one is evaluated.
-    let ahead = !portions.costly && options.until.is_none() && options.until_yield.is_none();
-    let mut waiting: (Vec<Portion>, Vec<Block>) = Default::default();
-    let (mut reached, mut expected) = (None, portions.total as f64);
-    loop {
-        let ends = run.stopped() || tally.stopped() || reached == Some(true);
-        let batch = if ends { Vec::new() } else { portions.next_batch() };
-        if batch.is_empty() && waiting.0.is_empty() {
-            break;
-        }
-        let lenses = tally.lenses().to_vec();
-        let one = |portion: &Portion| {
-            rooms.within(room, |(room, points, out)| {
-                draws.write(*portion, room, points);
-                block(&evaluator, (points, out), *portion, (&lenses, control, measured.as_ref(), options.sampler))
-            })
-        };
-        let asked = Instant::now();
-        let costly = portions.costly;
-        // Workers of a costly model share each batch, so its portions are evaluated one after the other.
-        let blocks = || match costly {
-            true => batch.iter().map(one).collect(),
-            false => batch.par_iter().map(one).collect(),
-        };
-        if ahead {
-            let (before, answers) = std::mem::take(&mut waiting);
-            let ((), blocks) = join(|| tally.add(&before, answers), blocks);
-            waiting = (batch, blocks);
-            portions.at_once = if asked.elapsed() < SHORT.0 { SHORT.1 } else { 1 };
-        } else {
-            tally.add(&batch, blocks());
-        }
-        if watched && !ahead {
-            tally.watch(options.seed, run);
-        }
-        if let Some(ratio) = tally.shortfall(options) {
-            // Standard errors shrink with the root of the sample size.
-            expected = expected.min(tally.samples() as f64 * (ratio * ratio).max(1.0));
-            reached = Some(ratio <= 1.0);
-            if ratio.is_infinite() && tally.samples() >= UNSETTLED {
-                break;
-            }
-        }
-        if tally.samples() > 0 {
-            pace(Pace { samples: tally.samples(), expected, elapsed: begun.elapsed() });
-        }
-    }
+    let sample = Sample { options, draws, control, measured: measured.as_ref(), watched };
+    let reached = sample.fill(&evaluator, &mut portions, &mut tally, (begun, pace));
     if watched {
         tally.watch(options.seed, run);
     }
@@ -517,64 +473,105 @@ fn drawn(
     }
 }
 
-/// Evaluates one portion, with surrogates and groups of measured samples.
-fn block(
-    evaluator: &Evaluator<'_>,
-    (points, out): (&Points, &mut Responses),
-    portion: Portion,
-    (lenses, control, measured, sampler): (
-        &[CountingScale],
-        Option<&Control<'_>>,
-        Option<&MeasuredGroups<'_>>,
-        Sampler,
-    ),
-) -> Block {
-    let part = evaluator.part();
-    part.ask_into(points, evaluator.problem().outputs(), out);
-    let beside = control.map_or_else(Vec::new, |control| control.beside(points));
-    let groups = measured.map(|measured| (measured, measured.groups(points)));
-    Block::of(out, part.into_ledger(), (lenses, sampler, portion.replicate), &beside, groups.as_ref())
+/// Choices by which points are drawn and counted.
+struct Sample<'a> {
+    options: &'a SimulationOptions,
+    draws: &'a Draws<'a>,
+    control: Option<&'a Control<'a>>,
+    measured: Option<&'a MeasuredGroups<'a>>,
+    /// True if standard errors are left out that depend on assemblies the sample hardly contains.
+    watched: bool,
 }
 
-/// Portions of a sample, a batch at a time, with equal progress of all replicates.
-struct Portions {
-    replicates: u64,
-    rows: u64,
-    /// Number of points in all replicates together.
-    total: u64,
-    /// Number of points in each replicate.
-    each: u64,
-    done: u64,
-    costly: bool,
-    /// Factor on the number of tasks of a batch.
-    at_once: usize,
-}
-
-impl Portions {
-    fn new(options: &SimulationOptions, costly: bool, dimensions: usize) -> Self {
-        let (replicates, each) = match options.sampler {
-            Sampler::Random => (1, options.samples),
-            Sampler::Sobol => (REPLICATES, options.samples.div_ceil(REPLICATES).next_power_of_two()),
-        };
-        let rows = if costly && replicates == 1 { COSTLY } else { ROWS.min(near_rows(dimensions)) } as u64;
-        Self { replicates, rows: rows.min(each), total: replicates * each, each, done: 0, costly, at_once: 1 }
-    }
-
-    fn done(&self) -> bool {
-        self.done >= self.each
-    }
-
-    fn next_batch(&mut self) -> Vec<Portion> {
-        let tasks = if self.costly { 1 } else { (self.at_once * TASKS) as u64 / self.replicates };
-        let mut batch = Vec::new();
-        for _ in 0..tasks {
-            if self.done() {
+impl Sample<'_> {
+    /// Evaluates portions until there are no more, the requested accuracy is reached, or the run is stopped. Returns if the accuracy was
+    /// reached, None if none is requested.
+    fn fill(
+        &self,
+        evaluator: &Evaluator<'_>,
+        portions: &mut Portions,
+        tally: &mut Tally<'_>,
+        (begun, pace): (Instant, &dyn Fn(Pace)),
+    ) -> Option<bool> {
+        /// Duration below which the next batch has more tasks, and the factor on their number.
+        const SHORT: (Duration, usize) = (Duration::from_millis(50), 4);
+        let (options, run) = (self.options, evaluator.run());
+        let rooms = Rooms::none();
+        let room = || (Room::default(), Points::repeated(&[], 0), Responses::open(0, 0));
+        // If the number of points is known beforehand, a batch is counted while the next one is evaluated.
+        let ahead = !portions.costly && options.until.is_none() && options.until_yield.is_none();
+        let mut waiting: (Vec<Portion>, Vec<Block>) = Default::default();
+        let (mut reached, mut expected) = (None, portions.total as f64);
+        loop {
+            let ends = run.stopped() || tally.stopped() || reached == Some(true);
+            let batch = if ends { Vec::new() } else { portions.next_batch() };
+            if batch.is_empty() && waiting.0.is_empty() {
                 break;
             }
-            let rows = self.rows.min(self.each - self.done) as usize;
-            batch.extend((0..self.replicates).map(|replicate| Portion { replicate, first: self.done, rows }));
-            self.done += rows as u64;
+            let lenses = tally.lenses().to_vec();
+            let one = |portion: &Portion| {
+                rooms.within(room, |(room, points, out)| {
+                    self.draws.write(*portion, room, points);
+                    keep_rows(points, portions.slice(*portion));
+                    self.block(evaluator, (points, out), *portion, &lenses)
+                })
+            };
+            let asked = Instant::now();
+            let costly = portions.costly;
+            // Workers of a costly model share each batch, so its portions are evaluated one after the other.
+            let blocks = || match costly {
+                true => batch.iter().map(one).collect(),
+                false => batch.par_iter().map(one).collect(),
+            };
+            if ahead {
+                let (before, answers) = std::mem::take(&mut waiting);
+                let ((), blocks) = join(|| tally.add(&before, answers), blocks);
+                waiting = (batch, blocks);
+                portions.at_once = if asked.elapsed() < SHORT.0 { SHORT.1 } else { 1 };
+            } else {
+                let blocks = blocks();
+                tally.add(&batch, blocks);
+            }
+            if self.watched && !ahead {
+                tally.watch(options.seed, run);
+            }
+            if let Some(ratio) = tally.shortfall(options) {
+                // Standard errors shrink with the root of the sample size.
+                expected = expected.min(tally.samples() as f64 * (ratio * ratio).max(1.0));
+                reached = Some(ratio <= 1.0);
+                if ratio.is_infinite() && tally.samples() >= UNSETTLED {
+                    break;
+                }
+            }
+            if tally.samples() > 0 {
+                pace(Pace { samples: tally.samples(), expected, elapsed: begun.elapsed() });
+            }
         }
-        batch
+        reached
     }
+
+    /// Evaluates one portion, with surrogates and groups of measured samples.
+    fn block(
+        &self,
+        evaluator: &Evaluator<'_>,
+        (points, out): (&Points, &mut Responses),
+        portion: Portion,
+        lenses: &[CountingScale],
+    ) -> Block {
+        let part = evaluator.part();
+        part.ask_into(points, evaluator.problem().outputs(), out);
+        let beside = self.control.map_or_else(Vec::new, |control| control.beside(points));
+        let groups = self.measured.map(|measured| (measured, measured.groups(points)));
+        let place = (lenses, self.options.sampler, portion.replicate);
+        Block::of(out, part.into_ledger(), place, &beside, groups.as_ref())
+    }
+}
+
+/// Keeps a range of the rows of points.
+fn keep_rows(points: &mut Points, rows: Range<usize>) {
+    if rows.len() == points.rows() {
+        return;
+    }
+    let columns: Vec<Vec<f64>> = (0..points.dimensions()).map(|d| points.column(d)[rows.clone()].to_vec()).collect();
+    *points = Points::from_columns(rows.len(), &columns);
 }

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::assembly::{Points, Responses};
 use crate::problem::Problem;
 use sensitol_numeric::correlation::JointLaw;
@@ -125,7 +127,7 @@ fn place(sample: &Sample, value: f64) -> usize {
 }
 
 /// Count, mean, sum of squares about the mean, and rejects of one group.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Group {
     pub(super) count: f64,
     pub(super) mean: f64,
@@ -155,7 +157,7 @@ impl Group {
 }
 
 /// Groups of every sample for one characteristic.
-#[derive(Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct GroupSums(pub(super) Vec<Vec<Group>>);
 
 impl GroupSums {

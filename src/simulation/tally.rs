@@ -12,6 +12,7 @@ use crate::simulation::joint_result as together;
 use crate::simulation::joint_result::Together;
 use crate::simulation::rare_switch_side::RareSwitchSides;
 use crate::simulation::sample_groups::{GroupSums, MeasuredGroups};
+use crate::simulation::shard::{CharacteristicSums, ShardError, failure};
 use crate::simulation::surface_difference::Difference;
 use crate::simulation::{REPLICATES, Simulation, SimulationOptions, TASKS};
 use crate::summary::{RunSummary, StopReason};
@@ -220,6 +221,56 @@ impl<'a> Tally<'a> {
                 lens.scale = Some(scale(values));
             }
         }
+    }
+
+    /// Chooses the bins of every characteristic from these values.
+    pub(super) fn choose_bins(&mut self, values: Vec<Vec<f64>>) {
+        for (lens, values) in self.lenses.iter_mut().zip(values) {
+            lens.scale = (!values.is_empty()).then(|| scale(values));
+        }
+    }
+
+    /// Sums of all points, for a file: those of every characteristic and of all together, the number of points, and their cost.
+    pub(super) fn into_sums(self) -> (Vec<CharacteristicSums>, Together, u64, Ledger) {
+        let one = |(c, count): (usize, Count)| CharacteristicSums {
+            name: self.problem.characteristics()[c].name().to_owned(),
+            summary: count.summary(),
+            largest: count.largest(),
+            outside: [0, 1].map(|side| count.replicates.iter().map(|of| of.outside[side]).sum()),
+            groups: count.groups,
+            failed: count.failed,
+            error: count.error.map(|error| error.to_string()),
+            bins: count.replicates.into_iter().next().and_then(|first| first.fine),
+        };
+        (self.counts.into_iter().enumerate().map(one).collect(), self.together, self.answered, self.ledger)
+    }
+
+    /// Adds the sums of a shard.
+    pub(super) fn add_sums(
+        &mut self,
+        characteristics: &[CharacteristicSums],
+        together: &Together,
+        answered: u64,
+    ) -> Result<(), ShardError> {
+        self.answered += answered;
+        self.together.merge(together);
+        for ((count, lens), sums) in self.counts.iter_mut().zip(&mut self.lenses).zip(characteristics) {
+            count.groups.merge(&sums.groups);
+            count.failed += sums.failed;
+            count.error = count.error.take().or_else(|| sums.error.as_deref().map(failure));
+            let replicate = &mut count.replicates[0];
+            replicate.summary.merge(&sums.summary);
+            replicate.largest.merge(&sums.largest);
+            replicate.outside[0] += sums.outside[0];
+            replicate.outside[1] += sums.outside[1];
+            let Some(bins) = &sums.bins else { continue };
+            let scale = *lens.scale.get_or_insert_with(|| bins.scale());
+            if scale != bins.scale() {
+                return Err(ShardError::NoCommonBins { characteristic: sums.name.clone() });
+            }
+            replicate.fine.get_or_insert_with(|| Fine::new(scale)).merge(bins);
+        }
+        Ok(())
     }
 
     /// Searches for assemblies that the sample hardly contains, once it has values. Standard errors that depend on these or on a few points

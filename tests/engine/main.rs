@@ -24,6 +24,7 @@ mod quadratures;
 mod recorded_failures;
 mod response_surface;
 mod settled;
+mod shards;
 mod simulation;
 mod student;
 mod yields;

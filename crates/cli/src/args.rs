@@ -60,6 +60,14 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol simulate examples/engine-balance/study.toml --samples 1000000\n  sensitol simulate examples/first-study/study.toml --rare\n  sensitol simulate examples/ishigami/study.toml --sobol"
     )]
     Simulate(SimulateArgs),
+    /// Figures of a sample from the shards of several processes
+    ///
+    /// Each process draws its own points by `sensitol simulate --shards K --shard k -o FILE`. The points of all shards are those of one run
+    /// with the same seed. A shard that is missing is an error, and one that is given twice counts once.
+    #[command(
+        after_help = "Examples:\n  sensitol simulate examples/first-study/study.toml --samples 1000000 --shards 2 --shard 1 -o 1.json\n  sensitol simulate examples/first-study/study.toml --samples 1000000 --shards 2 --shard 2 -o 2.json\n  sensitol merge examples/first-study/study.toml 1.json 2.json"
+    )]
+    Merge(MergeArgs),
     /// Every method that fits, against a reference: speed and accuracy
     #[command(after_help = "Examples:\n  sensitol compare examples/stacked-blocks/study.toml --svg trade.svg")]
     Compare(CompareArgs),
@@ -316,6 +324,39 @@ pub(super) struct SimulateArgs {
     /// The method of the surrogate [default: that of the study, or full to 20 dimensions and six-n beyond]
     #[arg(short, long, value_name = "METHOD", requires = "surrogate")]
     pub(super) method: Option<MethodArg>,
+
+    /// Number of processes that share the points, each with a --shard of its own; `sensitol merge` joins their results
+    #[arg(long, value_name = "K", value_parser = whole, allow_negative_numbers = true, requires = "shard", conflicts_with_all = ["rare", "sobol", "surrogate_control", "until", "until_yield", "check", "html", "csv"])]
+    pub(super) shards: Option<u64>,
+
+    /// Number of this process, from 1 to --shards: its sums are written as JSON, for `sensitol merge`
+    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true, requires = "shards")]
+    pub(super) shard: Option<u64>,
+
+    /// Exit with 1 unless the sample shows that every target_yield is met
+    #[arg(long)]
+    pub(super) check: bool,
+
+    /// Write the report as one HTML page
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    pub(super) html: Option<PathBuf>,
+
+    /// Write estimates and histogram as CSV files into DIR, which is made where it is missing
+    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
+    pub(super) csv: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct MergeArgs {
+    #[command(flatten)]
+    pub(super) of: SampledArgs,
+
+    /// Files of all shards, in any order
+    #[arg(value_name = "SHARD.json", required = true)]
+    pub(super) shards: Vec<PathBuf>,
 
     /// Exit with 1 unless the sample shows that every target_yield is met
     #[arg(long)]

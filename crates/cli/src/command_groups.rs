@@ -8,7 +8,7 @@ use crate::args::Arguments;
 
 /// Commands by task, in the order in which people need them.
 const GROUPS: [(&str, &[&str]); 5] = [
-    ("Analyse", &["analyze", "simulate", "compare", "sweep", "watch", "pearson"]),
+    ("Analyse", &["analyze", "simulate", "merge", "compare", "sweep", "watch", "pearson"]),
     ("Allocate tolerances", &["allocate"]),
     ("Write a study", &["init", "import", "check", "expand", "models", "workbench", "serve", "schema"]),
     ("External models", &["probe", "plan", "evaluate", "journal"]),

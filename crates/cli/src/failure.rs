@@ -11,7 +11,7 @@ use sensitol::compare::CompareError;
 use sensitol::method::MethodError;
 use sensitol::problem::ProblemError;
 use sensitol::rare::RareError;
-use sensitol::simulation::SimulationError;
+use sensitol::simulation::{ShardError, SimulationError};
 use sensitol::sweep::SweepError;
 use sensitol::warning::Advice;
 use sensitol_external::journal::JournalError;
@@ -91,6 +91,10 @@ pub(super) enum Failure {
     Method(#[from] MethodError),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    Sharding(#[from] ShardError),
+    #[error("{path}: {reason}", path = path.display())]
+    Shard { path: PathBuf, reason: String },
     #[error(transparent)]
     Rare(#[from] RareError),
     #[error(transparent)]

@@ -10,7 +10,7 @@ use crate::analysis::result::linear::Linear;
 use crate::analysis::result::range_figures::{LinearFigures, RangeFigures};
 use crate::analysis::result::variance_share::Shares;
 use crate::analysis::result::yield_error::of_yield;
-use crate::analysis::{InteractionList, VerificationKind, YieldSource};
+use crate::analysis::{InteractionList, VerificationKind};
 use crate::extremes::ExtremesProof;
 use crate::method::{ErrorEstimate, Order, Outcome, estimate};
 use crate::problem::Problem;

@@ -1,15 +1,19 @@
 //! `sensitol simulate`.
 
+use std::path::Path;
+
 use crate::args::{SamplerArg, SimulateArgs};
-use crate::commands::rare;
+use crate::commands::{rare, shard};
+use crate::csv::CsvFolder;
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
-use crate::output::{Look, json};
+use crate::output::{Destination, Look, json};
 use crate::running::{Clock, checked, confirmed, kept};
 use crate::sampling::{sampling, surrogate};
+use crate::shared_args::OutputArgs;
 use crate::{interrupt, study};
 use sensitol::method::Options;
-use sensitol::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_with};
+use sensitol::simulation::{Shard, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_with};
 use sensitol::warning::{Counted, Warning};
 use sensitol_numeric::sampling::Sampler;
 use sensitol_report::document::terminal::text;
@@ -27,20 +31,33 @@ const SOBOL: u64 = 1 << 14;
 const TABLES: [&str; 3] = ["estimates", "histogram", "sobol"];
 
 pub(crate) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
+    if let Some((number, count)) = asked.shard.zip(asked.shards) {
+        return shard::run(asked, Shard::new(number, count)?, look);
+    }
     let study = study::read_sampled(&asked.of, look)?;
-    let joint = study.options.target_joint_yield.is_some();
-    if asked.check && !joint && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
+    if asked.check && !judges(&study) {
         return Err(Failure::NothingToCheck);
     }
     if asked.rare {
         return rare::run(asked, &study, look);
     }
     let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref()).forced(asked.output.force);
-    let destination = files.output(&asked.output)?;
-    let tables = if asked.sobol { &TABLES[..] } else { &TABLES[..2] };
-    let names: Vec<String> = tables.iter().map(|name| format!("{name}.csv")).collect();
-    let folder = files.folder(asked.csv.as_deref(), &names)?;
-    let page = files.file(asked.html.as_deref())?;
+    let reported = Reported::open(&mut files, &asked.output, asked.csv.as_deref(), asked.html.as_deref(), asked.sobol)?;
+    let options = options(asked, &study);
+    let clock = Clock::start(asked.of.work.time);
+    let simulation = simulate(&study, asked.of.threads, &options, &clock, look);
+    kept(&study.problem)?;
+    report(&study, &simulation?, reported, (asked.check, &clock), look)
+}
+
+/// True if the study has a requirement to judge.
+pub(super) fn judges(study: &Study) -> bool {
+    let joint = study.options.target_joint_yield.is_some();
+    joint || study.problem.characteristics().iter().any(|one| !one.requirements().is_empty())
+}
+
+/// Returns the options of a simulation, as the command line and the study give them.
+pub(super) fn options(asked: &SimulateArgs, study: &Study) -> SimulationOptions {
     let wanted = asked.until.is_some() || asked.until_yield.is_some();
     let mut options = SimulationOptions::default();
     options.samples = asked.samples.unwrap_or(if wanted { 1 << 52 } else { SAMPLES });
@@ -51,21 +68,54 @@ pub(crate) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     options.seed = asked.of.seed.or(study.seed).unwrap_or(Options::SEED);
     options.until = asked.until;
     options.until_yield = asked.until_yield;
-    options.control = asked.surrogate_control.then(|| surrogate(&study, asked));
+    options.control = asked.surrogate_control.then(|| surrogate(study, asked));
     options.target_joint_yield = study.options.target_joint_yield;
     options.sobol = asked.sobol.then(|| asked.samples.unwrap_or(SOBOL));
     options.budget = asked.budget;
-    let clock = Clock::start(asked.of.work.time);
-    let simulation = simulate(&study, asked.of.threads, &options, &clock, look);
-    kept(&study.problem)?;
-    let simulation = simulation?;
-    let about = clock.about(&study);
-    let report = SimulationReport::of(&study.problem, &simulation, about);
+    options
+}
+
+/// Files into which the report of a simulation is written, opened before anything is evaluated.
+pub(super) struct Reported<'a> {
+    asked: &'a OutputArgs,
+    destination: Destination,
+    folder: Option<CsvFolder>,
+    tables: &'static [&'static str],
+    page: Option<Destination>,
+}
+
+impl<'a> Reported<'a> {
+    /// Opens the files. `indices` adds the table of Sobol' indices.
+    pub(super) fn open(
+        files: &mut Files,
+        asked: &'a OutputArgs,
+        csv: Option<&Path>,
+        html: Option<&Path>,
+        indices: bool,
+    ) -> Result<Self, Failure> {
+        let destination = files.output(asked)?;
+        let tables = if indices { &TABLES[..] } else { &TABLES[..2] };
+        let names: Vec<String> = tables.iter().map(|name| format!("{name}.csv")).collect();
+        let folder = files.folder(csv, &names)?;
+        let page = files.file(html)?;
+        Ok(Self { asked, destination, folder, tables, page })
+    }
+}
+
+/// Writes the report of a simulation, and returns the exit code.
+pub(super) fn report(
+    study: &Study,
+    simulation: &Simulation,
+    to: Reported<'_>,
+    (check, clock): (bool, &Clock),
+    look: Look,
+) -> Result<Exit, Failure> {
+    let report = SimulationReport::of(&study.problem, simulation, clock.about(study));
     let document = report.document();
-    let written =
-        destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
-    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, tables))));
-    let written = written.and(page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
+    let text = if to.asked.json { json(&report) } else { text(&document, look.style(to.asked)) };
+    let written = to.destination.write(&text);
+    let written = written.and(to.folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, to.tables))));
+    let written = written.and(to.page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
     look.tell_all(&report.warnings);
     clock.stopped(&simulation.run, (simulation.samples, None), Counted::Points, look);
     if interrupt::stopped() {
@@ -81,7 +131,7 @@ pub(crate) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     }
     let judged = simulation.characteristics.iter().flat_map(SimulatedCharacteristic::requirements);
     let judged = judged.chain(simulation.joint_requirement);
-    let exit = if asked.check { checked(simulation.run.unfinished(), judged) } else { Exit::Done };
+    let exit = if check { checked(simulation.run.unfinished(), judged) } else { Exit::Done };
     Ok(confirmed(exit, &simulation.run))
 }
 

@@ -281,3 +281,61 @@ fn simulate_reports_its_control_variate() {
     // `--method` without a surrogate is an error.
     run(&["--method", "full"]).failure().code(2);
 }
+
+/// Eight processes share a sample. One is killed and starts again, one runs twice. What is merged prints the figures of one run.
+#[test]
+fn shards_of_eight_processes_are_one_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let shard = |number: u64, name: &str| {
+        let (number, file) = (number.to_string(), path(name));
+        let arguments = ["simulate", BLOCKS, "--samples", "200000", "--shards", "8", "--shard", &number, "-o", &file];
+        sensitol(&arguments)
+    };
+    let files: Vec<String> = (1..=8).map(|number| format!("{number}.json")).collect();
+    for (number, name) in (1..).zip(&files) {
+        if number == 3 {
+            let mut killed = shard(number, name).spawn().unwrap();
+            killed.kill().unwrap();
+            killed.wait().unwrap();
+        }
+        assert!(shard(number, name).status().unwrap().success());
+    }
+    assert!(shard(5, "again.json").status().unwrap().success());
+    let all: Vec<String> = files.iter().map(|name| path(name)).chain([path("again.json")]).collect();
+    let merge = |files: &[String], json: bool| {
+        let mut arguments = vec!["merge", BLOCKS];
+        arguments.extend(files.iter().map(String::as_str));
+        arguments.extend(json.then_some("--json"));
+        sensitol(&arguments).output().unwrap()
+    };
+    let found: Value = serde_json::from_slice(&merge(&all, true).stdout).unwrap();
+    let whole = json(&["simulate", BLOCKS, "--samples", "200000", "--json"]);
+    for key in ["samples", "seed", "method", "failed", "study_sha256"] {
+        assert_eq!(found[key], whole[key], "{key}");
+    }
+    let [a, b] = [&found, &whole].map(|of| &of["characteristics"][0]);
+    for key in ["yield", "ppm_below", "ppm_above", "histogram", "range", "samples", "verdict"] {
+        assert_eq!(a[key], b[key], "{key}");
+    }
+    let [a, b] = [a, b].map(|of| of["sigma"].as_f64().unwrap());
+    assert!((a - b).abs() < 1e-12 * b, "{a} {b}");
+
+    let refused = |files: &[String]| {
+        let output = merge(files, false);
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(refused(&all[1..4]).contains("of 8 shards 5 are missing: 1, 5, 6, 7, 8"));
+    let text = std::fs::read_to_string(path("2.json")).unwrap();
+    std::fs::write(path("cut.json"), &text[..text.len() / 2]).unwrap();
+    assert!(refused(&[path("cut.json")]).contains("it is not complete or was changed"));
+    std::fs::write(path("other.json"), text.replacen("\"study_sha256\":\"", "\"study_sha256\":\"0", 1)).unwrap();
+    assert!(refused(&[path("other.json")]).contains("the study or its data files were changed since"));
+    assert!(refused(&[BLOCKS.to_owned()]).contains("it is no file of `sensitol simulate --shard`"));
+    assert!(refused(&[path("none.json")]).contains("none.json: No such file"));
+    // A result of another program is not written over, and a shard may be written again.
+    std::fs::write(path("letter.txt"), "Dear reader").unwrap();
+    assert_eq!(shard(1, "letter.txt").output().unwrap().status.code(), Some(2));
+    assert!(shard(1, "1.json").status().unwrap().success());
+}

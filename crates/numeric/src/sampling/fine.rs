@@ -1,17 +1,19 @@
 //! Counts in fine bins: quantiles of any number of values in constant memory.
 
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
 use crate::elementary::{Work, on_this_processor};
 
 /// Scale of the bins: equal widths from each power of two of `1 + |u|` to the next, with `u` in units of a spread about a middle. Bins are
 /// fine in the centre, wider far out, and cover every value.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scale {
     middle: f64,
     spread: f64,
 }
 
 /// Number of values in each bin. Counts are whole numbers, so that the order of the values does not change the last bit.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Fine {
     scale: Scale,
     counts: Vec<u64>,
@@ -79,7 +81,41 @@ impl Work for Bins<'_> {
     }
 }
 
+/// Counts of the filled bins alone, for a file.
+#[derive(Serialize, Deserialize)]
+struct FilledBins {
+    scale: Scale,
+    /// Pairs of a bin and its count, ascending.
+    bins: Vec<(u32, u64)>,
+}
+
+impl Serialize for Fine {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let filled = (0..).zip(&self.counts).filter(|&(_, &count)| count > 0);
+        FilledBins { scale: self.scale, bins: filled.map(|(bin, &count)| (bin, count)).collect() }.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Fine {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let FilledBins { scale, bins } = FilledBins::deserialize(deserializer)?;
+        let mut fine = Self::new(scale);
+        for (bin, count) in bins {
+            let place =
+                fine.counts.get_mut(bin as usize).ok_or_else(|| D::Error::custom("no such bin of a histogram"))?;
+            *place = count;
+            fine.total = fine.total.checked_add(count).ok_or_else(|| D::Error::custom("too many values in bins"))?;
+        }
+        Ok(fine)
+    }
+}
+
 impl Fine {
+    /// Scale of the bins.
+    pub fn scale(&self) -> Scale {
+        self.scale
+    }
+
     /// Empty counts.
     pub fn new(scale: Scale) -> Self {
         Self { scale, counts: vec![0; 2 * SIDE], total: 0 }

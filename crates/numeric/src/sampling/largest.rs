@@ -16,6 +16,8 @@
 //! itself they do so in 96.6 % or more. Without the rule they do so in 36 % of the kurtoses of the heavy-tailed distributions at 1000
 //! points. For a normal distribution every standard error is given from 10 000 points on, and those of mean, sigma and skewness from 1000.
 
+use serde::{Deserialize, Serialize};
+
 use crate::sampling::{Estimate, Summary};
 
 /// Greatest number of largest points that are used.
@@ -31,7 +33,7 @@ const COMMON: f64 = 0.2;
 const SPREAD: [f64; 2] = [0.25, 0.5];
 
 /// Ends of a sample: its ten least and its ten greatest values.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LargestPoints {
     /// Least values, ascending.
     least: Vec<f64>,

@@ -1,5 +1,7 @@
 //! Mean and central moments of a sample up to the eighth, which can be merged.
 
+use serde::{Deserialize, Serialize};
+
 use crate::elementary::{Work, on_this_processor};
 
 /// Highest moment: the standard error of a kurtosis needs the eighth.
@@ -15,7 +17,7 @@ const ORDER: usize = 8;
 /// sample.merge(&Summary::of(&[3.0, 4.0]));
 /// assert_eq!((sample.count(), sample.mean(), sample.moment(2)), (4, 2.5, 1.25));
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Summary {
     count: u64,
     mean: f64,
