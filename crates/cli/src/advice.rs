@@ -9,7 +9,7 @@ pub(super) fn help(advice: &[Advice]) -> Option<String> {
 }
 
 /// Returns the advice as an option or a command if there is one, else in the words of the library.
-fn words(advice: &Advice) -> String {
+pub(super) fn words(advice: &Advice) -> String {
     match advice {
         Advice::UseMethod { methods } => {
             let names: Vec<&str> = methods.iter().map(|method| method.name()).collect();

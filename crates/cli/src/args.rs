@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
+use crate::commands::examples::ExamplesArgs;
 use crate::commands::journal::JournalArgs;
 use crate::import_args::ImportArgs;
 pub(super) use crate::init_args::InitArgs;
@@ -42,6 +43,10 @@ pub(super) struct Arguments {
     /// When to use colours; `never` prints plain ASCII too
     #[arg(long, global = true, value_name = "WHEN", default_value = "auto", help_heading = OUTPUT)]
     pub(super) color: ColorChoice,
+
+    /// Print an error as JSON on stdout too, and the result as JSON where the command has one
+    #[arg(long, global = true, help_heading = OUTPUT, hide_short_help = true)]
+    pub(super) json: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -90,6 +95,7 @@ pub(super) enum Command {
     /// Validates studies; evaluates nothing
     ///
     /// Nothing is evaluated or executed. Every one is validated, whatever is wrong with another; the exit code is 2 when one is wrong.
+    /// With --json each has its errors with line, column and advice; several studies give one array.
     #[command(
         after_help = "Examples:\n  sensitol check examples/stacked-blocks/study.toml\n  sensitol check examples/stacked-blocks/study.toml examples/engine-balance/study.toml"
     )]
@@ -137,6 +143,9 @@ pub(super) enum Command {
     /// when the user asks for a result, and has the rights of the user.
     #[command(after_help = "Examples:\n  sensitol serve\n  sensitol serve examples/external-python --port 8080")]
     Serve(ServeArgs),
+    /// The examples of the documentation, to begin from
+    #[command(after_help = "Examples:\n  sensitol examples\n  sensitol examples copy engine-balance")]
+    Examples(ExamplesArgs),
     /// The JSON Schema of study files, or of reports
     #[command(
         after_help = "Examples:\n  sensitol schema -o study.schema.json\n  sensitol schema --report -o report.schema.json"

@@ -10,7 +10,7 @@ use crate::args::Arguments;
 const GROUPS: [(&str, &[&str]); 5] = [
     ("Analyse", &["analyze", "simulate", "merge", "compare", "sweep", "watch", "pearson"]),
     ("Allocate tolerances", &["allocate"]),
-    ("Write a study", &["init", "import", "check", "expand", "models", "workbench", "serve", "schema"]),
+    ("Write a study", &["init", "examples", "import", "check", "expand", "models", "workbench", "serve", "schema"]),
     ("External models", &["probe", "plan", "evaluate", "journal"]),
     ("Shell", &["completions", "man", "help"]),
 ];

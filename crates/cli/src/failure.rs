@@ -131,6 +131,10 @@ pub(super) enum Failure {
     Pairs { text: String, fault: &'static str },
     #[error(transparent)]
     UnknownName(#[from] UnknownName),
+    #[error("there is no example `{}`; `sensitol examples` lists all: {known}", clipped(name))]
+    UnknownExample { name: String, nearest: Option<String>, known: String },
+    #[error("this build holds no examples: they stand in the folder examples of a clone or of a release")]
+    NoExamples,
     #[error("--at: there is no dimension `{name}`; known: {known}")]
     UnknownDimension { name: String, nearest: Option<String>, known: String },
     #[error("{path} cannot be written: {error}", path = path.display())]
@@ -217,14 +221,19 @@ impl Failure {
                 let all: Vec<String> = std::iter::once(error).chain(&error.more).map(render).collect();
                 Some(all.join("\n\n"))
             }
-            Self::Problem(ProblemError::UnknownCharacteristic { nearest: Some(nearest), .. }) => {
-                Some(title(&format!("{of}{self}"), Some(format!("did you mean `{nearest}`?"))))
-            }
-            Self::UnknownDimension { nearest: Some(nearest), .. } => {
-                Some(title(&format!("{of}{self}"), Some(format!("did you mean `{nearest}`?"))))
-            }
-            Self::Import { help, .. } => Some(title(&format!("{of}{self}"), help.clone())),
-            _ => Some(title(&format!("{of}{self}"), advice::help(&self.advice()))),
+            _ => Some(title(&format!("{of}{self}"), self.help())),
+        }
+    }
+
+    /// Returns the text to write instead, or the actions to take, in one line.
+    pub(super) fn help(&self) -> Option<String> {
+        match self {
+            Self::Study(error) => help(error),
+            Self::Problem(ProblemError::UnknownCharacteristic { nearest: Some(nearest), .. })
+            | Self::UnknownDimension { nearest: Some(nearest), .. }
+            | Self::UnknownExample { nearest: Some(nearest), .. } => Some(format!("did you mean `{nearest}`?")),
+            Self::Import { help, .. } => help.clone(),
+            _ => advice::help(&self.advice()),
         }
     }
 }

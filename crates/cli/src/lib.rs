@@ -8,6 +8,7 @@ mod command_groups;
 mod commands;
 mod csv;
 mod failure;
+mod failure_report;
 mod files;
 mod import_args;
 mod init_args;
@@ -31,6 +32,7 @@ use crate::commands::check;
 use crate::commands::compare;
 use crate::commands::difference;
 use crate::commands::evaluate;
+use crate::commands::examples;
 use crate::commands::expand;
 use crate::commands::import;
 use crate::commands::init;
@@ -56,13 +58,17 @@ use clap::{CommandFactory, FromArgMatches};
 
 use args::{Arguments, Command};
 use failure::{Exit, Failure};
+use failure_report::{ErrorDocument, ErrorReport};
 
 pub use crate::commands::reference::{command, exit_codes};
 use sensitol_numeric::names::nearest;
 
 /// Prints messages of the argument parser. Help and version are results, everything else is a usage error.
-fn told(error: clap::Error) -> Exit {
+fn told(error: clap::Error, as_json: bool) -> Exit {
     if error.use_stderr() {
+        if as_json {
+            report_errors(None, vec![ErrorReport::of_usage(&error)]);
+        }
         output::usage(&error.render().ansi().to_string());
         return Exit::Usage;
     }
@@ -74,6 +80,14 @@ fn told(error: clap::Error) -> Exit {
             failure.exit()
         }
         _ => Exit::Done,
+    }
+}
+
+/// Prints errors as JSON on stdout. The text on stderr stays, so that a person reads what a program parses.
+fn report_errors(command: Option<String>, errors: Vec<ErrorReport>) {
+    if !errors.is_empty() {
+        // Nothing is left to do where stdout is closed: the exit code tells the error.
+        let _ = output::Destination::Stdout.write(&output::json(&ErrorDocument::of(command, errors)));
     }
 }
 
@@ -135,10 +149,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 /// Runs the command as [`run`] does, and returns the exit code as a number, for callers that end the process in another way than by an
 /// [`ExitCode`].
 pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let parsed = command_groups::grouped().try_get_matches_from(arguments);
+    let given: Vec<OsString> = arguments.into_iter().collect();
+    let as_json = given.iter().any(|argument| argument == "--json");
+    let parsed = command_groups::grouped().try_get_matches_from(given);
+    let command = parsed.as_ref().ok().and_then(clap::ArgMatches::subcommand_name).map(str::to_owned);
     let arguments = match parsed.and_then(|mut matches| Arguments::from_arg_matches_mut(&mut matches)) {
         Ok(arguments) => arguments,
-        Err(error) => return told(with_suggestion(error)) as u8,
+        Err(error) => return told(with_suggestion(error), as_json) as u8,
     };
     output::set_color(arguments.color);
     let style =
@@ -152,10 +169,11 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Watch(asked) => watch::run(asked, style),
         Command::Allocate(asked) => allocate::run(asked, style),
         Command::Plan(asked) => plan::run(asked, style),
-        Command::Check(asked) => check::run(asked, style),
+        Command::Check(asked) => check::run(asked, arguments.json, style),
         Command::Expand(asked) => expand::run(asked, style),
         Command::Models(asked) => models::run(asked, style),
         Command::Probe(asked) => probe::run(asked, style),
+        Command::Examples(asked) => examples::run(asked, arguments.json),
         Command::Evaluate(asked) => evaluate::run(asked, style),
         Command::Journal(asked) => journal::run(asked, style),
         Command::Init(asked) => init::run(asked),
@@ -171,6 +189,9 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let exit = result.unwrap_or_else(|failure| {
         if let Some(message) = failure.render() {
             output::error(&message);
+        }
+        if arguments.json {
+            report_errors(command, ErrorReport::all(&failure));
         }
         Failure::exit(&failure)
     });

@@ -323,7 +323,7 @@ fn temporary(path: &Path) -> std::io::Result<TempPath> {
 }
 
 /// Prefix of the names of temporary files.
-const TEMPORARY: &str = ".sensitol-";
+pub(super) const TEMPORARY: &str = ".sensitol-";
 /// Age above which a temporary file counts as left over from a killed run. A file exists only while it is written.
 const LEFT_OVER: Duration = Duration::from_secs(3600);
 

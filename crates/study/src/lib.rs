@@ -55,6 +55,7 @@ mod entries;
 mod error;
 mod expand;
 mod external_settings;
+mod fault_code;
 mod files;
 mod folder;
 #[cfg(feature = "import")]
@@ -91,7 +92,7 @@ pub use scene::{
     SceneFeature, SceneJoint, SceneMeasure, ScenePart,
 };
 #[cfg(feature = "schema")]
-pub use schema::schema;
+pub use schema::{SCHEMA_FILE, SCHEMA_ID, schema};
 pub use zone_fault::ZoneFault;
 
 use std::path::{Path, PathBuf};

@@ -26,8 +26,16 @@ pub fn schema() -> Value {
     let schema = SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<StudyFile>();
     let mut schema = schema.to_value();
     tidy(&mut schema);
+    schema["$id"] = SCHEMA_ID.into();
     schema
 }
+
+/// Name of the schema of study files. It is not an address: editors read the schema from a file, and nothing is fetched. The number rises
+/// when a study that was valid becomes invalid.
+pub const SCHEMA_ID: &str = "urn:sensitol:study:1";
+
+/// File of the schema that new studies name, from their own folder.
+pub const SCHEMA_FILE: &str = "study.schema.json";
 
 /// Removes the parts that schemars adds for Rust types: null for optional keys, and the formats of numbers.
 fn tidy(value: &mut Value) {

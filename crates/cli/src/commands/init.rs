@@ -9,8 +9,8 @@ use crate::failure::{Exit, Failure};
 use crate::output::Destination;
 use sensitol_models::{Model, ModelInput};
 use sensitol_report::document::number::plain;
-use sensitol_study::Format;
 use sensitol_study::write::{inline, pair, quoted};
+use sensitol_study::{Format, SCHEMA_FILE};
 
 /// Tolerance of the inputs of a built-in model, relative to their nominal value.
 const TOLERANCE: &str = "1%";
@@ -94,7 +94,7 @@ fn written(asked: &InitArgs, path: &Path) -> Result<KindFiles, Failure> {
         let name = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         (file, name)
     };
-    let study = |text: String| (path.to_owned(), text);
+    let study = |text: String| (path.to_owned(), with_schema(&text));
     if let Some(model) = &asked.model {
         return Ok((vec![study(of_model(known(model)?))], &["analyze"]));
     }
@@ -128,8 +128,15 @@ pub(crate) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
+/// Adds the lines that name the schema to the text of a new study in TOML.
+pub(crate) fn with_schema(text: &str) -> String {
+    format!(
+        "#:schema ./{SCHEMA_FILE}\n# Editors complete and check keys by that file: sensitol schema -o {SCHEMA_FILE}\n{text}"
+    )
+}
+
 /// Quotes a path for a shell.
-fn shell(path: &Path) -> String {
+pub(crate) fn shell(path: &Path) -> String {
     let text = path.display().to_string();
     let plain = |c: char| c.is_alphanumeric() || "_-./:+,@%".contains(c) || cfg!(windows) && c == '\\';
     match text.chars().all(plain) {

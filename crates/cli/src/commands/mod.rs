@@ -6,6 +6,7 @@ pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod difference;
 pub(crate) mod evaluate;
+pub(crate) mod examples;
 pub(crate) mod expand;
 pub(crate) mod import;
 pub(crate) mod import_step;

@@ -5,8 +5,9 @@ use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json as value};
 
 use crate::args::{OutputArgs, SchemaArgs};
-use crate::commands::{journal, models, pearson, plan, point_report, probe, several};
+use crate::commands::{check, examples, journal, models, pearson, plan, point_report, probe, several};
 use crate::failure::{Exit, Failure};
+use crate::failure_report::ErrorDocument;
 use crate::files::Files;
 use crate::output::json;
 use sensitol_report::{
@@ -27,7 +28,7 @@ pub(crate) fn run(asked: &SchemaArgs) -> Result<Exit, Failure> {
 fn reports() -> Value {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.contract = Contract::Serialize);
     let mut generator = settings.into_generator();
-    let commands: [(&str, Value); 13] = [
+    let commands: [(&str, Value); 16] = [
         ("analyze", of::<Report>(&mut generator)),
         ("analyze-compare", of::<DifferenceReport>(&mut generator)),
         ("simulate", of::<SimulationReport>(&mut generator)),
@@ -41,6 +42,9 @@ fn reports() -> Value {
         ("models", of::<Vec<models::ModelReport>>(&mut generator)),
         ("pearson", of::<pearson::Answers>(&mut generator)),
         ("journal-show", of::<Vec<journal::ModelReport>>(&mut generator)),
+        ("check", of::<check::CheckReport>(&mut generator)),
+        ("examples", of::<Vec<examples::ExampleReport>>(&mut generator)),
+        ("errors", of::<ErrorDocument>(&mut generator)),
     ];
     let mut definitions: Map<String, Value> = generator.take_definitions(true);
     let all: Vec<Value> = commands.iter().map(|(name, _)| value!({ "$ref": format!("#/$defs/{name}") })).collect();

@@ -10,6 +10,7 @@ use crate::args::{AnalyzeArgs, StackArg};
 use crate::commands::analyze::{Beside, analyzed, printed, read};
 use crate::csv::CsvFolder;
 use crate::failure::{Exit, Failure};
+use crate::failure_report::ErrorReport;
 use crate::files::Files;
 use crate::interrupt;
 use crate::output::{Destination, Look, error, json};
@@ -110,7 +111,7 @@ pub(crate) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
         let (study, beside) = match study {
             Ok(ready) => ready,
             Err(failure) => {
-                printer.failed(name, failure.to_string());
+                printer.failed(name, &failure);
                 exit = exit.worse(failure.exit());
                 continue;
             }
@@ -118,7 +119,7 @@ pub(crate) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
         if interrupt::stopped() {
             let (cause, counted) = (StopReason::Interrupted, Counted::Evaluations);
             look.of(name).warn(&Warning::Stopped { cause, limit_s: None, done: 0, planned: None, counted });
-            printer.failed(name, "interrupted before it was analysed".to_owned());
+            printer.entry_of_error(name, "interrupted before it was analysed".to_owned(), Vec::new());
             exit = Exit::Interrupted;
             continue;
         }
@@ -129,7 +130,7 @@ pub(crate) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
         });
         // A report whose files could not be written is still printed: the study counts as shown.
         if let (Err(failure), false) = (&result, printer.shown > shown) {
-            printer.failed(name, failure.to_string());
+            printer.failed(name, failure);
         }
         exit = exit.worse(outcome(name, result)?);
     }
@@ -223,7 +224,11 @@ pub(crate) struct Entry {
 #[serde(untagged)]
 pub(crate) enum Outcome {
     Report(Box<Report>),
-    Failed { error: String },
+    Failed {
+        error: String,
+        /// The errors with their places.
+        errors: Vec<ErrorReport>,
+    },
 }
 
 /// Prints reports one by one, or collects them if the output is a single value or file.
@@ -292,8 +297,12 @@ impl<'a> Printer<'a> {
         self.rows.extend(configuration.filter(|_| shown).map(|name| (name.to_owned(), report.clone())));
     }
 
-    fn failed(&mut self, name: &str, error: String) {
-        let entry = Entry { study: name.to_owned(), outcome: Outcome::Failed { error } };
+    fn failed(&mut self, name: &str, failure: &Failure) {
+        self.entry_of_error(name, failure.to_string(), ErrorReport::all(failure));
+    }
+
+    fn entry_of_error(&mut self, name: &str, error: String, errors: Vec<ErrorReport>) {
+        let entry = Entry { study: name.to_owned(), outcome: Outcome::Failed { error, errors } };
         self.entries.push(entry);
     }
 
@@ -307,7 +316,9 @@ impl<'a> Printer<'a> {
                 Some(_) => self.text += &rows,
             }
         }
-        let Some(destination) = self.destination.filter(|_| self.shown > 0) else { return Ok(()) };
+        // Without a report an existing file stays as it is, and stdout still gets the errors.
+        let errors_alone = self.asked.output.json && self.asked.output.output.is_none();
+        let Some(destination) = self.destination.filter(|_| self.shown > 0 || errors_alone) else { return Ok(()) };
         destination.write(&match table(self.asked) {
             Some(StackArg::Csv) if self.asked.gum.is_some() => budget_csv_of_studies(&self.budgets),
             Some(StackArg::Csv) => stack_csv_of_studies(&self.stacks),
