@@ -1,11 +1,20 @@
 import os
 from typing import Any, Callable, final
 
-__all__ = ["Law", "Outcome", "Study", "__version__", "run_cli"]
+__all__ = ["Law", "Outcome", "Study", "__version__", "run_cli", "run_confined", "warnings_page"]
 
 __version__: str
 
 def run_cli(arguments: list[str]) -> int: ...
+def run_confined(
+    task: str,
+    folder: str | os.PathLike[str],
+    root: str | os.PathLike[str],
+    starts_programs: bool,
+    study_alone: bool,
+    seconds: float | None,
+) -> str: ...
+def warnings_page() -> str: ...
 
 @final
 class Law:

@@ -3,6 +3,7 @@
 //! Python code runs only on the calling thread. The engine works on threads of its own and sends every block of points to the caller. The
 //! caller evaluates it, checks for signals and shows progress.
 
+mod confined;
 mod errors;
 mod host;
 mod law;
@@ -27,6 +28,8 @@ fn run_cli(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_function(wrap_pyfunction!(run_cli, module)?)?;
+    module.add_function(wrap_pyfunction!(confined::run_confined, module)?)?;
+    module.add_function(wrap_pyfunction!(confined::warnings_page, module)?)?;
     module.add_class::<study::Study>()?;
     module.add_class::<law::Law>()?;
     module.add_class::<outcome::Outcome>()

@@ -8,6 +8,7 @@ mod cli;
 #[allow(dead_code, reason = "each test binary uses a part of it")]
 mod command;
 mod difference;
+mod examples;
 mod exit_codes;
 mod groups;
 mod hosted;
@@ -16,6 +17,7 @@ mod import;
 mod import_meaning;
 mod import_step;
 mod init;
+mod json_errors;
 mod labels;
 mod likely_mistakes;
 mod memory;

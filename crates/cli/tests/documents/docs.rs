@@ -250,6 +250,7 @@ pub fn documents() -> Vec<String> {
         "benches/README.md",
         "benches/python.md",
         "python/README.md",
+        "packaging/README.md",
         "adapters/PROTOCOL.md",
         "adapters/python/README.md",
         "adapters/freecad/README.md",

@@ -71,6 +71,8 @@ fn every_command_refuses_what_is_wrong() {
         &["models", "rocket"],
         &["expand", "nowhere.toml"],
         &["init", "no-such-folder/gap"],
+        &["examples", "list", "rocket"],
+        &["examples", "copy", "rocket"],
         &["import", "no-such.csv"],
         &["workbench", "nowhere.toml"],
         &["serve", "nowhere"],
@@ -94,7 +96,9 @@ fn every_command_refuses_what_is_wrong() {
         let error = String::from_utf8(output.stderr).unwrap();
         assert!(error.starts_with("error: "), "{arguments:?}: {error}");
         all += &format!("$ sensitol {}\n{error}\n", arguments.join(" "));
-        known.insert(arguments[0].to_owned() + if arguments[0] == "journal" { arguments[1] } else { "" });
+        known.insert(
+            arguments[0].to_owned() + if ["journal", "examples"].contains(&arguments[0]) { arguments[1] } else { "" },
+        );
     }
     insta::assert_snapshot!("every-command-refuses", all);
     let expected: BTreeSet<String> = commands().iter().map(|words| words.concat()).collect();

@@ -24,7 +24,7 @@ fn every_report_keeps_its_schema() {
     const HOUSING: &str = "examples/shaft-and-housing/worst-case.toml";
     let schema = printed(&["schema", "--report"]);
     assert_eq!(schema["$id"], format!("urn:sensitol:report:{}", sensitol_report::SCHEMA));
-    let cases: [(&str, &[&str]); 17] = [
+    let cases: [(&str, &[&str]); 23] = [
         ("analyze", &["analyze", GAP, "--json"]),
         ("analyze", &["analyze", GAP, "--json", "--extremes", "-m", "six-n"]),
         ("analyze", &["analyze", ENGINE, "--json", "-m", "three-point"]),
@@ -32,6 +32,12 @@ fn every_report_keeps_its_schema() {
         ("analyze", &["analyze", "examples/measured-pin/study.toml", "--json"]),
         ("analyze", &["analyze", HOUSING, "--json", "--time", "0.001"]),
         ("analyze-several", &["analyze", GAP, "nowhere.toml", HOUSING, "--json"]),
+        ("check", &["check", GAP, "--json"]),
+        ("check", &["check", "examples/four-legged-table/study.toml", "--json"]),
+        ("check", &["check", "nowhere.toml", "--json"]),
+        ("examples", &["examples", "--json"]),
+        ("errors", &["analyze", "nowhere.toml", "--json"]),
+        ("errors", &["simulate", "--nonsense", "--json"]),
         ("simulate", &["simulate", GAP, "--json", "--samples", "2000"]),
         ("simulate", &["simulate", HOUSING, "--json", "--samples", "2000", "--surrogate-control"]),
         ("simulate-rare", &["simulate", GAP, "--json", "--rare", "--samples", "400"]),

@@ -26,6 +26,9 @@ pub(crate) struct ExamplesArgs {
 
 #[derive(Debug, Subcommand)]
 enum ExamplesCommand {
+    /// Lists the examples with their titles, as `sensitol examples` does
+    #[command(after_help = "Examples:\n  sensitol examples list")]
+    List,
     /// Copies an example into a new folder
     #[command(after_help = "Examples:\n  sensitol examples copy engine-balance")]
     Copy {
@@ -55,7 +58,7 @@ pub(crate) struct ExampleReport {
 pub(crate) fn run(asked: &ExamplesArgs, as_json: bool) -> Result<Exit, Failure> {
     let all = examples()?;
     match &asked.command {
-        None => {
+        None | Some(ExamplesCommand::List) => {
             let reports: Vec<ExampleReport> = all.iter().map(|(name, files)| ExampleReport::of(name, files)).collect();
             let text = if as_json { json(&reports) } else { listed(&reports) };
             Destination::Stdout.write(&text)?;

@@ -1,0 +1,5 @@
+"""``python -m sensitol``: the command."""
+
+from ._cli import main
+
+main()
