@@ -34,8 +34,8 @@ pub(crate) fn run(asked: &CheckArgs, as_json: bool, look: Look) -> Result<Exit, 
     }
 }
 
-/// What the method of a study would do, without an evaluation.
-struct Checked {
+/// Plan of a study in numbers, without an evaluation.
+struct PlanSize {
     dimensions: usize,
     varying: usize,
     characteristics: Vec<String>,
@@ -44,7 +44,7 @@ struct Checked {
     evaluations: [usize; 2],
 }
 
-impl Checked {
+impl PlanSize {
     fn of(study: &Study) -> Result<Self, Failure> {
         let procedure = study.options.method.procedure();
         let plan = procedure.plan(&study.problem, &study.options)?;
@@ -65,7 +65,7 @@ impl Checked {
 fn one(path: &Path, look: Look) -> Result<Exit, Failure> {
     let study = Study::read(path)?;
     look.warn_all(&study.warnings);
-    let checked = Checked::of(&study)?;
+    let checked = PlanSize::of(&study)?;
     let summary = format!(
         "{}: valid\n{}{}  {} dimensions, {} of which vary and matter\n  characteristics: {}\n  {} would evaluate {} points\n",
         path.display(),
@@ -86,7 +86,7 @@ fn one(path: &Path, look: Look) -> Result<Exit, Failure> {
 
 /// The report of `check --json` on one study. Keys of a study that is not valid are null.
 #[derive(Debug, Serialize, JsonSchema)]
-pub(crate) struct CheckReport {
+pub(crate) struct StudyCheck {
     schema: u32,
     /// The version of the program.
     sensitol: &'static str,
@@ -172,7 +172,7 @@ impl GapReport {
     }
 }
 
-impl CheckReport {
+impl StudyCheck {
     /// Checks one study.
     fn of(path: &Path) -> (Self, Option<Failure>) {
         let mut report = Self {
@@ -201,7 +201,7 @@ impl CheckReport {
     fn fill(&mut self, path: &Path) -> Result<(), Failure> {
         let study = Study::read(path)?;
         self.warnings = study.warnings.iter().map(WarningReport::of).collect();
-        let checked = Checked::of(&study)?;
+        let checked = PlanSize::of(&study)?;
         self.dimensions = Some(checked.dimensions);
         self.varying = Some(checked.varying);
         self.characteristics = Some(checked.characteristics);
@@ -221,7 +221,7 @@ impl CheckReport {
 fn reported(asked: &CheckArgs, look: Look) -> Result<Exit, Failure> {
     let (mut reports, mut exit) = (Vec::new(), Exit::Done);
     for path in &asked.studies {
-        let (report, failure) = CheckReport::of(path);
+        let (report, failure) = StudyCheck::of(path);
         let name = report.study.clone();
         let look = if asked.studies.len() > 1 { look.of(&name) } else { look };
         look.tell_all(&report.warnings);

@@ -42,7 +42,7 @@ fn reports() -> Value {
         ("models", of::<Vec<models::ModelReport>>(&mut generator)),
         ("pearson", of::<pearson::Answers>(&mut generator)),
         ("journal-show", of::<Vec<journal::ModelReport>>(&mut generator)),
-        ("check", of::<check::CheckReport>(&mut generator)),
+        ("check", of::<check::StudyCheck>(&mut generator)),
         ("examples", of::<Vec<examples::ExampleReport>>(&mut generator)),
         ("errors", of::<ErrorDocument>(&mut generator)),
     ];
