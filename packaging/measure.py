@@ -150,4 +150,5 @@ def main() -> None:
         sys.exit(f"packaging/measure.py: the import takes longer than {MOST_IMPORT:g} ms")
 
 
-main()
+if __name__ == "__main__":
+    main()

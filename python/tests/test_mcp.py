@@ -50,7 +50,7 @@ def folder(tmp_path):
     (studies / "program.toml").write_text(PROGRAM)
     (studies / "gap.py").write_text(MODEL)
     (tmp_path / "secret.toml").write_text(GAP)
-    (tmp_path / "secret.csv").write_text("pin\n7.99\n8.01\n8.02\n7.98\n")
+    (tmp_path / "secret.csv").write_text("pin\n7.99\n8.01\n8.02\n7.98\n8.00\n8.01\n7.99\n8.00\n")
     return studies
 
 
