@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use super::command::{run, sensitol};
+use super::command::sensitol;
 use sensitol_testing::repository;
 
 #[test]
 fn every_example_is_listed_with_its_title() {
-    let listed = run(&["examples"]);
+    let printed = |arguments: &[&str]| String::from_utf8(sensitol(arguments).output().unwrap().stdout).unwrap();
+    let listed = printed(&["examples"]);
     let folders =
         std::fs::read_dir(repository("examples")).unwrap().filter(|one| one.as_ref().unwrap().path().is_dir());
     let names: Vec<String> = folders.map(|one| one.unwrap().file_name().into_string().unwrap()).collect();
@@ -16,7 +17,7 @@ fn every_example_is_listed_with_its_title() {
         let line = listed.lines().find(|line| line.starts_with(&format!("{name} "))).unwrap();
         assert!(line.len() > name.len() + 5, "{line}");
     }
-    assert_eq!(listed, run(&["examples", "list"]));
+    assert_eq!(listed, printed(&["examples", "list"]));
 }
 
 /// Lists files and their bytes below a folder.

@@ -117,7 +117,8 @@ fn a_file_is_written_once() {
     let arguments = ["import", &path("stack.csv"), "-o", &path("stack.toml")];
     assert_eq!(sensitol(&arguments).output().unwrap().status.code(), Some(0));
     let written = std::fs::read_to_string(path("stack.toml")).unwrap();
-    assert!(written.starts_with("# Imported from stack.csv."), "{written}");
+    assert!(written.starts_with("#:schema ./study.schema.json\n"), "{written}");
+    assert!(written.lines().nth(2).unwrap().starts_with("# Imported from stack.csv."), "{written}");
     assert!(Study::read(Path::new(&path("stack.toml"))).is_ok());
     let again = sensitol(&arguments).output().unwrap();
     assert!(again.status.code() == Some(2) && String::from_utf8(again.stderr).unwrap().contains("is there already"));
