@@ -44,8 +44,8 @@ pub(super) struct Arguments {
     #[arg(long, global = true, value_name = "WHEN", default_value = "auto", help_heading = OUTPUT)]
     pub(super) color: ColorChoice,
 
-    /// Print an error as JSON on stdout too, and the result as JSON where the command has one
-    #[arg(long, global = true, help_heading = OUTPUT, hide_short_help = true)]
+    /// Print errors as JSON on stdout, and results where the command has such
+    #[arg(long, global = true, help_heading = OUTPUT)]
     pub(super) json: bool,
 }
 
