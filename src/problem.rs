@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::assembly::{AssemblyFunction, Points, State, States};
+use crate::assembly::{Adjusted, Adjustment, AssemblyFunction, Points, State, States};
 use crate::magnitude::Magnitudes;
 use crate::summary::EvaluatorSummary;
 use sensitol_numeric::characteristic::Characteristic;
@@ -100,6 +100,14 @@ impl Problem {
         dimensions: impl IntoIterator<Item = Dimension>,
         function: impl AssemblyFunction + 'static,
     ) -> Result<Self, ProblemError> {
+        Self::of_function(dimensions, Arc::new(function))
+    }
+
+    /// Problem of a function that others share, as [`new`](Self::new).
+    pub fn of_function(
+        dimensions: impl IntoIterator<Item = Dimension>,
+        function: Arc<dyn AssemblyFunction>,
+    ) -> Result<Self, ProblemError> {
         let dimensions: Vec<Dimension> = dimensions.into_iter().collect();
         let signature = function.signature();
         if dimensions.is_empty() {
@@ -122,7 +130,7 @@ impl Problem {
             correlation: None,
             characteristics,
             outputs,
-            function: Arc::new(function),
+            function,
             products: Arc::new([]),
             magnitudes: None,
             kept: OnceLock::new(),
@@ -161,6 +169,29 @@ impl Problem {
             })
             .collect::<Result<_, _>>()?;
         self.checked()
+    }
+
+    /// Sets dimensions that are chosen from a stock after the parts are made, one after the other. Every characteristic is then that
+    /// after the choice.
+    ///
+    /// # Example
+    /// A shim in steps of 0.1 leaves an error of at most 0.05.
+    ///
+    /// ```
+    /// use sensitol::assembly::{Adjustment, StockResponse};
+    /// use sensitol::{Closure, Dimension, Options, Problem, analyze};
+    /// let dimensions = [Dimension::normal("room", 5.5, 0.6)?, Dimension::fixed("shim", 5.0)?];
+    /// let play = Problem::new(dimensions, Closure::scalar("play", |x| x[0] - x[1]))?;
+    /// let stock = (45..=65).map(|tenth| f64::from(tenth) / 10.0 - 0.5).collect();
+    /// let shim = Adjustment { input: 1, nominal: 5.0, stock, to: 0, target: 0.5, response: StockResponse::Linear };
+    /// let play = play.adjusted(vec![shim]);
+    /// let sample = sensitol::simulate(&play, &sensitol::SimulationOptions::default())?;
+    /// let sigma = sample.characteristics[0].sigma.unwrap().value;
+    /// assert!((sigma - 0.1 / 12f64.sqrt()).abs() < 1e-4);
+    /// # Ok::<(), sensitol::Error>(())
+    /// ```
+    pub fn adjusted(&self, adjustments: Vec<Adjustment>) -> Self {
+        self.with_function(Arc::new(Adjusted::new(Arc::clone(&self.function), adjustments)))
     }
 
     /// Keeps only the characteristics with these names, in the order of the problem.

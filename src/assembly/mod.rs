@@ -7,6 +7,7 @@
 //! # A new kind of assembly function
 //! A new kind is one file with a type that implements [`AssemblyFunction`].
 
+mod adjusted;
 mod answer_table;
 mod blocks;
 mod bounds;
@@ -18,6 +19,7 @@ mod evaluator_account;
 pub mod formula;
 pub mod implicit;
 mod model_description;
+mod motion;
 mod polynomial;
 mod process_error;
 mod request;
@@ -27,9 +29,12 @@ mod signature;
 mod states;
 mod switch;
 
+pub(crate) use crate::assembly::adjusted::Adjusted;
+pub use crate::assembly::adjusted::{Adjustment, StockResponse};
 pub use crate::assembly::answer_table::GivenAnswers;
 pub use crate::assembly::answer_table::Table;
 pub use crate::assembly::model_description::{ModelInfo, NonRepeatable, RecordedFailure};
+pub use crate::assembly::motion::{Motion, MotionEnd, MotionExtremes};
 pub use blocks::{in_blocks, in_ranges, near_rows};
 pub use bounds::Bounds;
 pub use closure::Closure;
@@ -182,6 +187,13 @@ pub trait AssemblyFunction: Send + Sync {
     fn own_checks(&self, answers: usize) -> usize {
         let _ = answers;
         0
+    }
+
+    /// Returns the greatest number of evaluations of the model for one point of these outputs: more than 1 if an input is chosen from a
+    /// stock, or if an output is an extreme over a motion. This is not an evaluation.
+    fn evaluations_per_point(&self, outputs: &[usize]) -> usize {
+        let _ = outputs;
+        1
     }
 
     /// Returns points of earlier runs at which the model answered that one of `outputs` has no value. Crashes and missed deadlines are

@@ -82,6 +82,11 @@ impl<'a> Run<'a> {
         Self { finished: None, ..self }
     }
 
+    /// Removes the reports of points that are not those of the caller: their rows are others.
+    pub(crate) fn apart(self) -> Self {
+        Self { finished: None, withdrawn: None, ..self }
+    }
+
     /// Removes the stop, for quick work that follows from costly answers.
     pub(crate) fn unstopped(self) -> Self {
         Self { stop: None, ..self }

@@ -194,6 +194,10 @@ impl AssemblyFunction for States {
         self.states.iter().map(|state| state.function.own_checks(answers)).sum()
     }
 
+    fn evaluations_per_point(&self, outputs: &[usize]) -> usize {
+        self.by_state(outputs).map(|(state, _, own)| state.function.evaluations_per_point(&own)).sum::<usize>().max(1)
+    }
+
     fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {
         let mut all = Vec::new();
         for (state, asked, own) in self.by_state(outputs) {

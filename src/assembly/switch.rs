@@ -18,6 +18,8 @@ pub enum SwitchKind {
     Pole,
     /// A part that is pressed rests on another set of contacts.
     Contact,
+    /// Another value is chosen from a stock.
+    Choice,
 }
 
 /// Sets of contacts on which a pressed part can rest.

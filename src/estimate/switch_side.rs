@@ -91,7 +91,8 @@ impl FoundSwitch {
     pub(crate) fn warning(&self, characteristic: &str, sample: Option<u64>) -> Option<Warning> {
         let (switch, probability) = (self.name.clone(), self.probability);
         let change = match self.crossing {
-            _ if probability < TOLD => return None,
+            // A choice is asked for, and both sides of it are alike.
+            _ if probability < TOLD || self.switch.kind == SwitchKind::Choice => return None,
             Crossing::Kink => Change::Kink,
             Crossing::Jump => Change::Jump,
             Crossing::Edge => Change::Edge,

@@ -41,6 +41,10 @@ macro_rules! forward_unscaled {
             self.function.account()
         }
 
+        fn evaluations_per_point(&self, outputs: &[usize]) -> usize {
+            self.function.evaluations_per_point(outputs)
+        }
+
         fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {
             self.failures.without_own(self.function.recorded_failures(outputs))
         }

@@ -32,6 +32,9 @@ pub struct Characteristic {
     // Skipped: results hold the inspection together with its risks.
     #[serde(skip)]
     inspection: Option<Inspection>,
+    // Skipped: results hold the condition together with the conditional yield.
+    #[serde(skip)]
+    given: Option<String>,
     #[serde(flatten)]
     labels: Labels,
 }
@@ -46,6 +49,7 @@ impl Characteristic {
             target_yield: None,
             requirement: None,
             inspection: None,
+            given: None,
             labels: Labels::default(),
         }
     }
@@ -53,6 +57,16 @@ impl Characteristic {
     /// Replaces the name.
     pub fn renamed(self, name: String) -> Self {
         Self { name, ..self }
+    }
+
+    /// Sets another characteristic whose limits decide which assemblies count: a target yield is that of the assemblies that keep them.
+    pub fn with_given(self, given: impl Into<String>) -> Self {
+        Self { given: Some(given.into()), ..self }
+    }
+
+    /// Name of the characteristic whose limits decide which assemblies count. None if all count.
+    pub fn given(&self) -> Option<&str> {
+        self.given.as_deref()
     }
 
     /// Sets texts for reports.

@@ -7,6 +7,7 @@ use crate::data::DataFault;
 use crate::decimal::{SAID, decimal};
 use crate::entries::vocabulary::SOLIDS;
 use crate::typing_habits::TypingHabit;
+use crate::compensator_fault::CompensatorFault;
 use crate::zone_fault::ZoneFault;
 use sensitol::allocation::CostError;
 use sensitol::assembly::NoColumn;
@@ -250,6 +251,9 @@ pub enum StudyFault {
     /// A zone or float of an assembly in space is not usable.
     #[error(transparent)]
     Zone(#[from] ZoneFault),
+    /// A compensator, an extreme over a motion or a condition is not usable.
+    #[error(transparent)]
+    Compensator(#[from] CompensatorFault),
     /// A formula is not valid.
     #[error("{0}")]
     Formula(FormulaFault),

@@ -9,6 +9,7 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
+use crate::entries::adjust_entry::{AdjustEntry, Adjustments};
 use crate::entries::correlation_entry::{CorrelationEntry, Correlations, JointEntry, Joints};
 use crate::entries::cost_entry::{RequireEntry, RequireTable};
 use crate::entries::file::{
@@ -236,6 +237,20 @@ impl JsonSchema for Correlations {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         json_schema!({ "type": "array", "items": generator.subschema_for::<CorrelationEntry>() })
+    }
+}
+
+impl JsonSchema for Adjustments {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Adjustments".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "array", "items": generator.subschema_for::<AdjustEntry>() })
     }
 }
 

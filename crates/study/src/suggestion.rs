@@ -1,6 +1,6 @@
 //! Remedies for the faults of a study: actions to take, and texts to write instead.
 
-use crate::entries::vocabulary::{CORRELATIONS, SOLIDS};
+use crate::entries::vocabulary::{ADJUSTMENTS, CORRELATIONS, SOLIDS};
 use crate::error::StudyFault;
 use crate::typing_habits::{TypingHabit, percent};
 use sensitol::allocation::CostError;
@@ -78,6 +78,9 @@ impl StudyFault {
             Self::UnknownFormat { beside: Some(study), .. } => Some(format!("did you mean {study}?")),
             Self::WrongType { expected, .. } if expected == CORRELATIONS => {
                 Some("write three lines for each pair:\n[[correlation]]\nbetween = [\"a\", \"b\"]\nvalue = 0.9".into())
+            }
+            Self::WrongType { expected, .. } if expected == ADJUSTMENTS => {
+                Some("write a table for each:\n[[adjust]]\ndimension = \"shim\"\nvalues = [0.9, 1.0, 1.1]\nto = \"gap\"\ntarget = 0.1".into())
             }
             Self::Syntax { slip, .. } => slip.as_ref().map(ToString::to_string),
             Self::WrongType { expected, found } => TypingHabit::of_value(expected, found).map(|slip| slip.to_string()),
@@ -209,6 +212,7 @@ impl StudyFault {
         match self {
             Self::Spatial(error) => Some(error.help()),
             Self::Zone(found) => Some(found.help()),
+            Self::Compensator(found) => Some(found.help()),
             Self::Conditions(ConditionsError::Unbalanced { .. }) => Some(
                 "as many equations as unknowns are needed; a loop counts for two, one along x and one along y".into(),
             ),

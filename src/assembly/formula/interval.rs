@@ -82,7 +82,7 @@ impl Interval {
     }
 
     /// Returns the same values, marked as not continuous.
-    fn broken(self) -> Self {
+    pub(crate) fn broken(self) -> Self {
         Self { whole: false, ..self }
     }
 
@@ -93,14 +93,14 @@ impl Interval {
     }
 
     /// Returns the smallest interval that contains both.
-    pub(super) fn hull(&self, other: &Self) -> Self {
+    pub(crate) fn hull(&self, other: &Self) -> Self {
         // `min` and `max` ignore NaN.
         let (lower, upper) = (self.lower.min(other.lower), self.upper.max(other.upper));
         Self { lower, upper, whole: self.whole && other.whole }
     }
 
     /// Returns the intersection with the interval from `lower` to `upper`.
-    fn within(&self, lower: f64, upper: f64) -> Self {
+    pub(crate) fn within(&self, lower: f64, upper: f64) -> Self {
         if self.is_empty() || self.lower > upper || self.upper < lower {
             return Self::EMPTY;
         }

@@ -1,5 +1,6 @@
 //! From the entries of a study to a problem.
 
+pub(crate) mod compensators;
 pub(crate) mod correlation;
 pub(crate) mod costs;
 pub(crate) mod driver;

@@ -4,6 +4,7 @@ use crate::build::inflation;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use crate::build::compensators::{self, extreme};
 use crate::build::correlation::correlated;
 use crate::build::costs::{costs, holding, requirement};
 use crate::build::driver as drive;
@@ -15,7 +16,9 @@ use crate::build::measured_rows as joint;
 use crate::build::model::{ModelOf, model, process, signature};
 use crate::build::units;
 use crate::build::zone;
+use crate::compensator_fault::CompensatorFault;
 use crate::data::Data;
+use crate::entries::adjust_entry::MotionEntry;
 use crate::dimension;
 use crate::entries::file::{CharacteristicEntry, Entries, StudyFile};
 use crate::entries::spanned::Spanned;
@@ -65,7 +68,8 @@ pub(crate) fn build(
     let unknown = |name: &str| file.unknowns.0.iter().any(|(known, _)| known.get_ref() == name);
     let all = file.characteristics.0.iter();
     // A characteristic is `open` if neither a formula nor an unknown gives its value: then a model must.
-    let open = all.clone().any(|(name, of)| !written(of.get_ref()) && !unknown(name.get_ref()));
+    let made = |entry: &CharacteristicEntry| written(entry) || extreme(entry).is_some();
+    let open = all.clone().any(|(name, of)| !made(of.get_ref()) && !unknown(name.get_ref()));
     let evaluated = model(file.model.as_ref(), open, source)?;
     let program = evaluated.as_ref().is_some_and(ModelOf::is_external);
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
@@ -113,9 +117,7 @@ pub(crate) fn build(
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used, &elements.made));
     // Costs and [analysis] may change dimensions: the end of the band that stays, and the factors of the RSS.
     let dimensions = inflation::taken(file, holding(file, dimensions)?)?;
-    let problem = Problem::new(dimensions, composite)
-        .and_then(|problem| problem.asking(characteristics))
-        .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
+    let problem = compensators::problem(file, dimensions, composite, characteristics, source)?;
     let (problem, of_rows) = correlated(problem, &file.correlation.0, &blocks)?;
     warnings.extend(of_rows);
     let problem = crate::build::options::products(&file.analysis, problem)?;
@@ -325,6 +327,11 @@ fn characteristics(
         let (text, key) = (name.get_ref(), format!("characteristics.{}", name.get_ref()));
         let entry = entry.get_ref();
         let mut unit = entry.unit.clone();
+        if let Some((motion, _)) = extreme(entry) {
+            let unit = faults.take(unit_of_extreme(file, model, (entry, motion.get_ref()), &key));
+            characteristics.extend(faults.take(characteristic(text, unit.flatten(), entry, &key)));
+            continue;
+        }
         // An external program states its outputs at its start, so they cannot be checked here.
         let unknowns = file.unknowns.names();
         if entry.formula.is_none() && !program && !unknowns.iter().any(|unknown| unknown.get_ref() == text) {
@@ -335,6 +342,28 @@ fn characteristics(
         characteristics.extend(faults.take(characteristic(text, unit, entry, &key)));
     }
     faults.none().map(|()| (characteristics, outputs))
+}
+
+/// Unit of an extreme over a motion: that of the characteristic whose extreme it is.
+fn unit_of_extreme(
+    file: &StudyFile,
+    model: Option<&Model>,
+    (entry, motion): (&CharacteristicEntry, &MotionEntry),
+    key: &str,
+) -> Result<Option<String>, Fault> {
+    let of = motion.of.get_ref();
+    let own = file.characteristics.0.iter().find(|(name, _)| name.get_ref() == of);
+    let own = own.and_then(|(_, entry)| entry.get_ref().unit.clone());
+    let output = model.and_then(|model| model.outputs.iter().find(|output| output.name == of));
+    let unit = own.or(output.map(|output| output.unit.to_owned()));
+    match (&entry.unit, &unit) {
+        (Some(given), unit) if Some(given) != unit.as_ref() => {
+            let unit = unit.clone().unwrap_or_else(|| "which has none".to_owned());
+            let found = CompensatorFault::ExtremeUnit { characteristic: of.clone(), unit };
+            Err(fault(motion.of.span(), format!("{key}.unit"), found))
+        }
+        _ => Ok(unit),
+    }
 }
 
 /// Output of the built-in model with the name of a characteristic that has no formula and is not an unknown.
@@ -374,6 +403,9 @@ fn characteristic(
         fault(at.span(), format!("{key}.upper"), error)
     })?;
     let mut characteristic = Characteristic::new(name).with_limits(limits).with_labels(entry.labels());
+    if let Some(given) = &entry.given {
+        characteristic = characteristic.with_given(given.get_ref());
+    }
     if let Some(unit) = unit {
         characteristic = characteristic.with_unit(unit);
     }

@@ -9,6 +9,7 @@ use crate::entries::about::AboutEntry;
 pub(crate) use crate::entries::analysis_entry::{AnalysisEntry, FactorEntry, PairsEntry};
 #[cfg(feature = "schema")]
 use crate::entries::assembly_schema as assembly;
+use crate::entries::adjust_entry::{Adjustments, MotionEntry};
 use crate::entries::correlation_entry::{Correlations, Joints};
 use crate::entries::cost_entry::{CostEntry, LossEntry, RequireEntry};
 pub(crate) use crate::entries::distribution_entry::{DistributionEntry, PartEntry, distribution};
@@ -90,6 +91,10 @@ pub(crate) struct StudyFile {
     /// Blocks of dimensions that vary together as a whole: rows of a measured file, or points within a zone.
     #[serde(default)]
     pub(crate) joint: Joints,
+    /// Dimensions that are chosen from a stock after the parts are made, such as a shim, so that a characteristic is nearest a target; one after the
+    /// other. All characteristics are those after the choice.
+    #[serde(default)]
+    pub(crate) adjust: Adjustments,
     /// Sizes of one assembly by name: nominal values and constants that take the place of those of the study, such as
     /// small = { L = 40, D = 8 }; or file = "sizes.csv", whose first column is the name.
     #[serde(default, rename = "configurations")]
@@ -368,6 +373,13 @@ pub(crate) struct CharacteristicEntry {
     #[serde(default, rename = "profile")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::profile"))]
     pub(crate) _profile: Option<IgnoredAny>,
+    /// The least value of another characteristic over a motion: { of = "gap", over = "theta", from = 0, to = 360 }.
+    pub(crate) minimum: Option<Spanned<MotionEntry>>,
+    /// The greatest value of another characteristic over a motion.
+    pub(crate) maximum: Option<Spanned<MotionEntry>>,
+    /// Another characteristic whose limits decide which assemblies count: the yield, and the target_yield, are those of the assemblies that
+    /// keep them.
+    pub(crate) given: Option<Spanned<String>>,
     /// The unit of the result and its limits: a label, checked or converted as `units` says.
     pub(crate) unit: Option<String>,
     /// Lower limit; without a limit there is no yield.

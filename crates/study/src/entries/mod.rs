@@ -1,6 +1,7 @@
 //! Types of a study file as it is written, for TOML, JSON and the JSON Schema.
 
 pub(crate) mod about;
+pub(crate) mod adjust_entry;
 pub(crate) mod analysis_entry;
 #[cfg(feature = "schema")]
 pub(crate) mod assembly_schema;

@@ -51,6 +51,11 @@ pub(crate) fn measured_models() -> Vec<&'static str> {
     MEASURED_MODELS.to_vec()
 }
 
+/// Names of the forms of a characteristic along an adjusted dimension.
+pub(crate) fn stock_responses() -> [&'static str; 3] {
+    sensitol::assembly::StockResponse::ALL.map(sensitol::assembly::StockResponse::name)
+}
+
 /// Names of the zones of a joint block.
 pub(crate) fn zones() -> Vec<&'static str> {
     words::ZONES.to_vec()

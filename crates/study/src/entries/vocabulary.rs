@@ -11,6 +11,9 @@ pub(crate) const REQUIREMENTS: [&str; 2] = ["worst-case", "rss"];
 /// Form of `[[correlation]]`, for faults.
 pub(crate) const CORRELATIONS: &str = "a list, each pair of dimensions below its own [[correlation]],";
 
+/// Form of `[[adjust]]`, for faults.
+pub(crate) const ADJUSTMENTS: &str = "a list, each adjusted dimension below its own [[adjust]],";
+
 /// Form of `[[joint]]`, for faults.
 pub(crate) const BLOCKS: &str = "a list, each block of dimensions below its own [[joint]],";
 /// Zones of `[[joint]]`.
