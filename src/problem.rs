@@ -204,7 +204,16 @@ impl Problem {
                 return Err(unknown(name, self.characteristics.iter().map(Characteristic::name)));
             }
         }
-        let kept = |characteristic: &Characteristic| names.iter().any(|name| name.as_ref() == characteristic.name());
+        let mut asked: Vec<String> = names.iter().map(|name| name.as_ref().to_owned()).collect();
+        // A characteristic that decides which assemblies count is needed too.
+        let mut next = 0;
+        while let Some(name) = asked.get(next) {
+            let of = self.characteristics.iter().find(|one| one.name() == name);
+            let given = of.and_then(|one| one.given()).filter(|given| !asked.iter().any(|known| known == given));
+            asked.extend(given.map(str::to_owned));
+            next += 1;
+        }
+        let kept = |characteristic: &Characteristic| asked.iter().any(|name| name == characteristic.name());
         let (outputs, characteristics) = (self.outputs.into_iter().zip(self.characteristics))
             .filter(|(_, characteristic)| kept(characteristic))
             .unzip();
@@ -347,7 +356,13 @@ impl Problem {
             }
             let (function, outputs) = (Arc::clone(&problem.function), problem.outputs.clone());
             all.push(State::new(name, function, moved, outputs));
-            let renamed = |one: &Characteristic| one.clone().renamed(Self::in_state(one.name(), name));
+            let renamed = |one: &Characteristic| {
+                let renamed = one.clone().renamed(Self::in_state(one.name(), name));
+                match one.given() {
+                    Some(given) => renamed.with_given(Self::in_state(given, name)),
+                    None => renamed,
+                }
+            };
             characteristics.extend(problem.characteristics.iter().map(renamed));
         }
         let outputs = (0..characteristics.len()).collect();

@@ -7,6 +7,7 @@ use crate::allocation::requirement::quality_loss::QualityLoss;
 use crate::allocation::requirement::registry::form_of;
 use serde::Serialize;
 
+use crate::assembly::SwitchKind;
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::simulation::{SimulationError, chosen};
@@ -391,6 +392,22 @@ pub enum AllocateError {
         /// Name of the characteristic.
         characteristic: String,
     },
+    /// Required yield of the assemblies that keep another characteristic's limits.
+    #[error("`{characteristic}` is given `{given}`, and tolerances are chosen by the yield of all assemblies: leave `given` out")]
+    Given {
+        /// Name of the characteristic.
+        characteristic: String,
+        /// Name of the one that decides which assemblies count.
+        given: String,
+    },
+    /// Requirement of a characteristic that follows a choice from stock.
+    #[error("`{characteristic}` follows {choice}: its steps leave no surface to choose tolerances by; leave [[adjust]] out")]
+    Chosen {
+        /// Name of the characteristic.
+        characteristic: String,
+        /// The choice, in words.
+        choice: String,
+    },
     /// Method without a surface for the search.
     #[error("{method} has no surface on which the search could follow the tolerances")]
     NoSurrogate {
@@ -426,6 +443,21 @@ impl AllocateError {
     }
 }
 
+/// Checks that the yields are those of all assemblies, and that no value is chosen from a stock.
+fn check_conditions(problem: &Problem) -> Result<(), AllocateError> {
+    for (one, &output) in problem.characteristics().iter().zip(problem.outputs()) {
+        let characteristic = one.name().to_owned();
+        if let Some(given) = one.given() {
+            return Err(AllocateError::Given { characteristic, given: given.to_owned() });
+        }
+        let switches = problem.function().switches(output).unwrap_or_default().list;
+        if let Some(switch) = switches.into_iter().find(|switch| switch.kind == SwitchKind::Choice) {
+            return Err(AllocateError::Chosen { characteristic, choice: switch.text });
+        }
+    }
+    Ok(())
+}
+
 impl AllocationTask {
     /// Checks that the task and the options fit the problem.
     pub(super) fn check(&self, problem: &Problem, options: &AllocationOptions) -> Result<(), AllocateError> {
@@ -442,6 +474,7 @@ impl AllocationTask {
         if !self.priced.is_empty() && nothing && self.goal == Goal::LeastCost {
             return Err(AllocateError::NothingRequired);
         }
+        check_conditions(problem)?;
         self.check_goal(problem)?;
         self.check_losses(problem)?;
         self.check_setups(problem)?;

@@ -14,6 +14,7 @@ pub use crate::analysis::distribution::law_guard::{LawRefutation, LawTest};
 pub use crate::analysis::distribution::moment_basis::{Fit, NoFit, Surface};
 pub use crate::analysis::distribution::surface_law::SurfaceShares;
 pub(crate) use crate::analysis::distribution::surface_law::{law_over, surface_law};
+use crate::analysis::distribution::conditional;
 use crate::analysis::distribution::yield_selection;
 pub use crate::analysis::evaluation_summary::Account;
 pub use crate::analysis::result::characteristic::{CharacteristicAnalysis, MissingPoints, Sensitivity};
@@ -42,6 +43,7 @@ use crate::analysis::sampling::nominal_kink;
 use crate::analysis::sampling::recorded_failures;
 use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::analysis::sampling::verification_stage;
+pub use crate::estimate::ConditionalYield;
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use sensitol_numeric::capability::{EstimatedShare, InspectionRisks};
@@ -272,6 +274,7 @@ pub(crate) fn analyze_keeping(
     }
     let joint = (options.target_joint_yield)
         .and_then(|_| yield_selection::joint(problem, options, &mut left, &characteristics, &laws));
+    conditional::condition(problem, options, &mut left, &mut characteristics, &laws);
     let spent = spent(&outcome, options, ledger.run);
     // The extremes do not affect shares: only the other questions decide whether a share is unfinished.
     characteristics.iter_mut().for_each(|one| one.missing.unfinished = spent.unfinished());

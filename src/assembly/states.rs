@@ -195,7 +195,7 @@ impl AssemblyFunction for States {
     }
 
     fn evaluations_per_point(&self, outputs: &[usize]) -> usize {
-        self.by_state(outputs).map(|(state, _, own)| state.function.evaluations_per_point(&own)).sum::<usize>().max(1)
+        self.by_state(outputs).map(|(state, _, own)| state.function.evaluations_per_point(&own)).max().unwrap_or(1)
     }
 
     fn recorded_failures(&self, outputs: &[usize]) -> Vec<RecordedFailure> {

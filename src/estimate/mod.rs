@@ -14,11 +14,13 @@
 //! | `switch_side`, `seldom_side` | sides of switches that are seldom met, and points on them | verification, simulation, rare |
 //! | `variance_shares` | Sobol' indices by exchanging inputs | verification, analysis, simulation |
 //! | `inspection` | risks of an inspection, from points of which the value is known | analysis, simulation |
+//! | `conditional_yield` | yield of the assemblies that keep another characteristic's limits | analysis, simulation |
 //! | `output_correlation` | correlation of characteristics, and their common rejects | analysis, simulation |
 //!
 //! Nothing here asks a costly model. An estimator takes a problem, or values with their weights. None depends on methods or results.
 
 pub(crate) mod cheap_model;
+mod conditional_yield;
 pub(crate) mod figures;
 mod inspection;
 mod normal_space;
@@ -35,6 +37,8 @@ pub(crate) mod variance_shares;
 mod verified;
 mod weighted_sample;
 
+pub use crate::estimate::conditional_yield::ConditionalYield;
+pub(crate) use crate::estimate::conditional_yield::conditions;
 pub(crate) use crate::estimate::figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
 pub(crate) use crate::estimate::inspection::{inspected_point, inspection_risks};
 pub(crate) use crate::estimate::normal_space::{Columns, NormalSpace};

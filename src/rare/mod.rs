@@ -254,6 +254,14 @@ pub enum RareError {
         /// Most points.
         most: u64,
     },
+    /// Characteristic whose target is that of the assemblies that keep another one's limits.
+    #[error("`{characteristic}` is given `{given}`, and rare events are shares of all assemblies: leave `given` out, or simulate")]
+    Given {
+        /// Name of the characteristic.
+        characteristic: String,
+        /// Name of the one that decides which assemblies count.
+        given: String,
+    },
     /// Problem that cannot be simulated, or has no surrogate.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
@@ -344,6 +352,9 @@ fn sought(
     pace: &dyn Fn(Pace),
 ) -> Result<RareEvents, RareError> {
     options.check(problem)?;
+    if let Some((one, given)) = problem.characteristics().iter().find_map(|one| Some((one, one.given()?))) {
+        return Err(RareError::Given { characteristic: one.name().to_owned(), given: given.to_owned() });
+    }
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
     // The surrogate comes first: its design points are the places at which points will be drawn.
     let begun = Instant::now();

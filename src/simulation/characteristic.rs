@@ -3,6 +3,7 @@
 use serde::{Serialize, Serializer};
 
 use crate::assembly::EvaluationError;
+use crate::estimate::ConditionalYield;
 use crate::extremes::keeps_by_proof;
 use crate::method::Method;
 use crate::problem::Problem;
@@ -98,6 +99,10 @@ pub struct SimulatedCharacteristic {
     /// Sobol' indices of every input. None if none were requested, or the sample does not determine them.
     #[serde(rename = "sobol")]
     pub indices: Option<Vec<SampledFactor>>,
+    /// Yield of the assemblies that keep the limits of the characteristic that this one is given. None if it is given none, or no point
+    /// keeps them.
+    #[serde(rename = "conditional_yield", skip_serializing_if = "Option::is_none")]
+    pub conditional: Option<ConditionalYield>,
     /// Risks of the inspection, among the points of the sample. None if there is no gauge.
     pub inspection: Option<InspectionRisks>,
     /// Uncertainty of the results because measured dimensions are known by samples. None if there are no measured dimensions.
@@ -155,7 +160,7 @@ fn share<S: Serializer>(estimate: &Option<YieldEstimate>, serializer: S) -> Resu
 
 rescale!(SimulatedCharacteristic { mean, sigma, quantiles, range, histogram, inspection, sampling } without {
     characteristic, samples, failed, error, skewness, kurtosis, yield_, below, above, reject_intervals, cp, cpk, unfinished, control, indices,
-    unsettled,
+    unsettled, conditional,
 });
 rescale!(Histogram { edges } without { counts });
 
@@ -254,6 +259,7 @@ impl SimulatedCharacteristic {
             }),
             indices: None,
             inspection,
+            conditional: None,
             sampling: None,
             unsettled: evidence.unsettled(),
         }
@@ -294,6 +300,11 @@ impl SimulatedCharacteristic {
                 None => own,
             };
         let (value, interval) = match requirement {
+            // The target is that of the assemblies that count.
+            Requirement::Yield(_) if self.characteristic.given().is_some() => {
+                let known = self.conditional.as_ref();
+                (known.map(|of| of.value), known.and_then(|of| of.interval))
+            }
             Requirement::Yield(_) => (
                 self.yield_.map(|share| share.value),
                 self.yield_.zip(self.yield_interval()).map(|(share, [low, high])| [low.min(share.bounds[0]), high]),

@@ -10,6 +10,8 @@ use sensitol_numeric::sampling::{Fine, LargestPoints, Scale, Summary};
 #[derive(Clone, Copy)]
 pub(super) struct CountingScale {
     pub(super) limits: KeptLimits,
+    /// Characteristic whose limits decide which points count for the conditional yield.
+    pub(super) given: Option<usize>,
     /// Scale of the histogram bins, known after the first batch.
     pub(super) scale: Option<Scale>,
 }

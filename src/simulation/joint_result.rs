@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::assembly::{Responses, all_finite};
-use crate::estimate::{OutputCorrelation, REPLICATES, pairs, student};
+use crate::estimate::{ConditionalYield, OutputCorrelation, REPLICATES, pairs, student};
 use crate::problem::Problem;
 use crate::simulation::SimulatedCharacteristic;
 use crate::simulation::characteristic::{REJECTED, YieldEstimate};
@@ -29,6 +29,9 @@ pub(super) struct Together {
     known: Parts<u64>,
     /// Points among `known` that keep all limits.
     kept: Parts<u64>,
+    /// Points that keep the given limits with a value, and those among them that keep the own limits, for each characteristic that is given
+    /// another.
+    conditional: Vec<[Parts<u64>; 2]>,
 }
 
 impl Together {
@@ -57,6 +60,10 @@ impl Together {
     fn merge_part(&mut self, own: usize, other: &Self, part: usize) {
         self.known[own] += other.known[part];
         self.kept[own] += other.kept[part];
+        self.conditional.resize(self.conditional.len().max(other.conditional.len()), [[0; REPLICATES]; 2]);
+        for (counts, more) in self.conditional.iter_mut().zip(&other.conditional) {
+            counts.iter_mut().zip(more).for_each(|(counts, more)| counts[own] += more[part]);
+        }
         let [before, added] = [self.count[own], other.count[part]];
         if added == 0.0 {
             return;
@@ -120,6 +127,16 @@ impl Work for Groups<'_> {
             }
             groups.known = by_group(&known).map(|count| count as u64);
             groups.kept = by_group(&kept).map(|count| count as u64);
+        }
+        for (c, given) in (0..lenses.len()).filter_map(|c| Some((c, lenses[c].given?))) {
+            let mut counts = [vec![0.0; out.rows()], vec![0.0; out.rows()]];
+            for (row, (&own, &other)) in columns[c].iter().zip(columns[given]).enumerate() {
+                if !own.is_nan() && lenses[given].limits.contains(other) {
+                    counts[0][row] = 1.0;
+                    counts[1][row] = if lenses[c].limits.contains(own) { 1.0 } else { 0.0 };
+                }
+            }
+            groups.conditional.push(counts.map(|counts| by_group(&counts).map(|count| count as u64)));
         }
         if lenses.len() > OutputCorrelation::MOST {
             return groups;
@@ -241,20 +258,46 @@ pub(super) fn correlations(problem: &Problem, parts: &Together) -> Vec<OutputCor
 
 /// Share that keeps all limits, of `answered` points. Returns None if fewer than two characteristics have limits.
 pub(super) fn joint(parts: &Together, sampler: Sampler, answered: u64) -> Option<YieldEstimate> {
+    let (value, interval) = share(&parts.known, &parts.kept, sampler)?;
     let [known, kept] = [&parts.known, &parts.kept].map(|counts| counts.iter().sum::<u64>());
+    let bounds = [kept, kept + answered.saturating_sub(known)].map(|most| most as f64 / answered.max(1) as f64);
+    Some(YieldEstimate { value, interval, bounds })
+}
+
+/// Sets the yields of the assemblies that keep given limits.
+pub(super) fn condition(
+    parts: &Together,
+    sampler: Sampler,
+    lenses: &[CountingScale],
+    characteristics: &mut [SimulatedCharacteristic],
+) {
+    let conditions = (0..lenses.len()).filter_map(|c| Some([c, lenses[c].given?]));
+    for ([c, given], [known, kept]) in conditions.zip(&parts.conditional) {
+        let Some((value, interval)) = share(known, kept, sampler) else { continue };
+        let measured = [c, given].map(|c| {
+            let one = &characteristics[c];
+            (one.yield_.map_or(0.0, |of| 1.0 - of.value), one.sampling.as_ref().map(|of| of.rejected))
+        });
+        let name = characteristics[given].characteristic.name();
+        characteristics[c].conditional = Some(ConditionalYield::new(name, value, interval, measured));
+    }
+}
+
+/// Share of `kept` among `known` points, with its 95 % interval. Returns None if there is no point.
+fn share(known: &Parts<u64>, kept: &Parts<u64>, sampler: Sampler) -> Option<(f64, [f64; 2])> {
+    let shares = known.iter().zip(kept);
+    let each = shares.map(|(&known, &kept)| (known > 0).then(|| kept as f64 / known as f64));
+    let [known, kept] = [known, kept].map(|counts| counts.iter().sum::<u64>());
     if known == 0 {
         return None;
     }
     let value = kept as f64 / known as f64;
     let few = kept.min(known - kept) < REJECTED * REPLICATES as u64;
-    let shares = parts.known.iter().zip(&parts.kept);
-    let each = shares.map(|(&known, &kept)| (known > 0).then(|| kept as f64 / known as f64));
     let interval = match of_replicates(each).filter(|_| sampler == Sampler::Sobol) {
         Some(error) if !few && error > 0.0 => [(value - 2.0 * error).max(0.0), (value + 2.0 * error).min(1.0)],
         _ => wilson(kept as f64, known as f64),
     };
-    let bounds = [kept, kept + answered.saturating_sub(known)].map(|most| most as f64 / answered.max(1) as f64);
-    Some(YieldEstimate { value, interval, bounds })
+    Some((value, interval))
 }
 
 /// Widens a joint yield by the uncertainty of measured samples: at least as many assemblies are rejected as by one characteristic, and at

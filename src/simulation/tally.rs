@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Responses, Run};
+use crate::estimate::conditions;
 use crate::evaluation::{Ledger, history};
 use crate::problem::Problem;
 use crate::simulation::characteristic::{Evidence, SimulatedCharacteristic};
@@ -136,11 +137,15 @@ impl<'a> Tally<'a> {
             error: None,
         };
         let characteristics = problem.characteristics();
+        let conditions = conditions(problem);
         Self {
             problem,
             control,
             lenses: (0..characteristics.len())
-                .map(|c| CountingScale { limits: problem.kept_limits(c), scale: None })
+                .map(|c| {
+                    let given = conditions.iter().find(|[own, _]| *own == c).map(|[_, given]| *given);
+                    CountingScale { limits: problem.kept_limits(c), given, scale: None }
+                })
                 .collect(),
             counts: characteristics.iter().map(|_| count()).collect(),
             together: Together::default(),
@@ -343,7 +348,8 @@ impl<'a> Tally<'a> {
                 None => found.with_proof(self.problem, c),
             }
         };
-        let characteristics: Vec<SimulatedCharacteristic> = self.counts.iter().enumerate().map(of).collect();
+        let mut characteristics: Vec<SimulatedCharacteristic> = self.counts.iter().enumerate().map(of).collect();
+        together::condition(&self.together, options.sampler, &self.lenses, &mut characteristics);
         let joint = together::joint(&self.together, options.sampler, self.answered)
             .map(|joint| together::with_sampling(joint, &characteristics));
         let joint_requirement = options.target_joint_yield.zip(joint).map(|(target, joint)| {

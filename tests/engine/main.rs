@@ -7,6 +7,7 @@ mod auto;
 mod auto_cost;
 mod blocks;
 mod capability;
+mod compensators;
 mod control;
 mod derivatives;
 mod discrete;

@@ -3,8 +3,9 @@
 use crate::document::number::{short, target_yield, unsigned_zero, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::{Cell, Columns, DataTable};
-use sensitol::analysis::OutputCorrelation;
+use sensitol::analysis::{ConditionalYield, OutputCorrelation};
 use sensitol::simulation::YieldEstimate;
+use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::Judged;
@@ -52,6 +53,17 @@ pub(super) fn all_limits(yield_: &str, error: &str, requirement: Option<&Judged>
     });
     let error = if error.is_empty() { String::new() } else { format!(", {error}") };
     format!("all limits at once: yield {yield_}{error}{target}")
+}
+
+/// Sentence with the yield of the assemblies that keep another characteristic's limits. None if the characteristic is given no other.
+pub(super) fn conditional(one: &Characteristic, found: Option<&ConditionalYield>) -> Option<String> {
+    let given = short(one.given()?);
+    let Some(of) = found else { return Some(format!("yield of those that keep {given} unknown")) };
+    let error = of.interval.map(|interval| one_error(of.value, interval));
+    let text = Rejects::all(1.0 - of.value, error).yield_text().unwrap_or_else(|| yielded(of.value));
+    let interval = of.interval.map(|ends| ends.map(yielded));
+    let interval = interval.map_or_else(String::new, |[low, high]| format!(", 95 % interval {low} to {high}"));
+    Some(format!("yield of those that keep {given} {text}{interval}"))
 }
 
 /// Sentence with a joint yield that has a 95 % interval.

@@ -11,7 +11,7 @@ use crate::figures::{Figures, Named, QUANTILES};
 use crate::head;
 use crate::head::{findings, seed};
 use crate::inspection::inspected;
-use crate::output_correlation::{all_limits_within, together};
+use crate::output_correlation::{all_limits_within, conditional, together};
 use crate::overview as glance;
 use crate::overview::OverviewLine;
 use crate::requirement::{judged, lines};
@@ -160,7 +160,11 @@ impl SimulationSection for SimulatedCharacteristic {
         let target = judged(self.target(), self.verdict());
         let rejects = Rejects::new(self.below, self.above, self.yield_error()).within(self.reject_intervals);
         let text = rejects.yield_text().unwrap_or_else(|| yielded(yield_.value));
-        section.note(Line::from(format!("yield {text}, 95 % interval {low} to {high}")).and(target));
+        let of_all = Line::from(format!("yield {text}, 95 % interval {low} to {high}"));
+        let conditional = conditional(&self.characteristic, self.conditional.as_ref());
+        // The target is that of the assemblies that count.
+        section.note(if conditional.is_some() { of_all } else { of_all.and(target.clone()) });
+        conditional.into_iter().for_each(|line| section.note(Line::from(line).and(target.clone())));
         if let Some([low, high]) = self.yield_bounds() {
             let (points, [low, high]) = (self.failed, [low, high].map(yielded));
             section

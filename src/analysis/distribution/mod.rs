@@ -1,5 +1,6 @@
 //! The distribution of a characteristic: surface distribution, its tests, coverage intervals, yield and inspection risks.
 
+pub(in crate::analysis) mod conditional;
 pub(in crate::analysis) mod counted_surface;
 pub(in crate::analysis) mod coverage;
 pub(in crate::analysis) mod inspection;

@@ -198,8 +198,20 @@ pub(in crate::analysis) fn joint(
     }
     let limited: Vec<usize> =
         (0..characteristics.len()).filter(|&c| characteristics[c].characteristic.limits().exist()).collect();
+    joint_of(problem, options, left, characteristics, laws, &limited)
+}
+
+/// Share of assemblies that keep the limits of these characteristics.
+pub(in crate::analysis) fn joint_of(
+    problem: &Problem,
+    options: &Options,
+    left: &mut SampleBudget,
+    characteristics: &[CharacteristicAnalysis],
+    laws: &[Option<SurfaceLaw>],
+    limited: &[usize],
+) -> Option<Verified> {
     let (mut rejects, mut square) = (Vec::new(), 0.0);
-    for &c in &limited {
+    for &c in limited {
         let one = &characteristics[c];
         rejects.push(one.distribution.capability?.rejected()?);
         let exact =
@@ -213,12 +225,12 @@ pub(in crate::analysis) fn joint(
         .powi(2);
     }
     let [least, most] = joint_bounds(&rejects);
-    let by_laws = by_laws(characteristics, laws, &limited);
+    let by_laws = by_laws(characteristics, laws, limited);
     let found = match by_laws {
         Some(found) if found.error <= CORRECTED => by_laws,
         // If model and surface keep different assemblies, the surface gives little information about the common rejects.
         _ => {
-            let by_points = by_points(problem, options, left, characteristics, &limited, &rejects);
+            let by_points = by_points(problem, options, left, characteristics, limited, &rejects);
             by_laws.into_iter().chain(by_points).min_by(|a, b| a.error.total_cmp(&b.error))
         }
     };

@@ -5,6 +5,7 @@ use serde::Serialize;
 use crate::analysis::result::coverage_intervals::CoverageIntervals;
 use crate::analysis::result::quantile_estimates::QuantileEstimates;
 use crate::analysis::result::yield_source::YieldSource;
+use crate::estimate::ConditionalYield;
 use sensitol_numeric::capability::{Capability, CapabilityShape, InspectionRisks};
 use sensitol_numeric::json_form::{RejectIntervals, through};
 use sensitol_numeric::power::rescale;
@@ -29,6 +30,10 @@ pub struct DistributionFigures {
     pub quantiles: Option<QuantileEstimates>,
     /// Intervals that hold the requested share of assemblies. None if none was requested.
     pub coverage: Option<CoverageIntervals>,
+    /// Yield of the assemblies that keep the limits of the characteristic that this one is given. None if it is given none, or if it is
+    /// unknown.
+    #[serde(rename = "conditional_yield", skip_serializing_if = "Option::is_none")]
+    pub conditional: Option<ConditionalYield>,
     /// Risks of the inspection. None if there is no gauge.
     pub inspection: Option<InspectionRisks>,
 }
@@ -42,9 +47,10 @@ impl DistributionFigures {
             reject_intervals: [None; 2],
             quantiles: None,
             coverage: None,
+            conditional: None,
             inspection: None,
         }
     }
 }
 
-rescale!(DistributionFigures { quantiles, coverage, inspection } without { yield_source, capability, reject_intervals });
+rescale!(DistributionFigures { quantiles, coverage, inspection } without { yield_source, capability, reject_intervals, conditional });

@@ -31,6 +31,9 @@ pub(crate) struct PlanReport {
     count: &'static str,
     varying: usize,
     evaluations: usize,
+    /// The most evaluations of the model for one point, where a value is chosen from stock or an extreme over a motion is sought.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    evaluations_per_point: Option<usize>,
     /// Evaluations where the program sends derivatives (`"gradients":true`); null where these save none, and for formulas.
     with_gradients: Option<usize>,
     /// The inputs over which the surface is fitted, where many dimensions drive few inputs of the program; null where these are the dimensions.
@@ -114,6 +117,8 @@ pub(crate) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
             .then(|| procedure.with_gradients(problem, &study.options))
             .flatten(),
         fitted_over: narrow.as_ref().map(|narrow| FittedOver { inputs: narrow.inputs, dimensions: narrow.dimensions }),
+        evaluations_per_point: Some(study.problem.function().evaluations_per_point(study.problem.outputs()))
+            .filter(|&most| most > 1),
         range: procedure.range(problem, &study.options),
         rounds: stages,
         largest_batch: of_first.max(evaluations.saturating_sub(of_first)),
@@ -194,6 +199,9 @@ impl PlanReport {
         }
         if let Some(fewer) = self.with_gradients {
             document.line(format!("{fewer} where the model sends derivatives with its answers"));
+        }
+        if let Some(most) = self.evaluations_per_point {
+            document.line(format!("each point takes up to {most} evaluations of the model: a choice from stock, or a motion"));
         }
         document.line(rounds(self));
         for (index, stage) in self.stages.iter().enumerate() {

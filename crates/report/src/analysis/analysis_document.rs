@@ -21,7 +21,7 @@ use crate::figures::{Figures, Named};
 use crate::head;
 use crate::head::findings;
 use crate::inspection::inspected;
-use crate::output_correlation::{all_limits, together, together_table};
+use crate::output_correlation::{all_limits, conditional, together, together_table};
 use crate::requirement::{judged, lines};
 use crate::sampling::sampled;
 use crate::{DimensionReport, Report};
@@ -394,7 +394,11 @@ impl CharacteristicSections for CharacteristicAnalysis {
     fn kept(&self, section: &mut Section) {
         let shown = |rejects: Rejects| format!("yield {}", rejects.text().unwrap_or_else(|| "unknown".to_owned()));
         let target = judged(self.target(), self.verdict());
-        section.note(Line::from(shown(self.rejects())).and(target));
+        let conditional = conditional(&self.characteristic, self.conditional.as_ref());
+        let plain = Line::from(shown(self.rejects()));
+        // The target is that of the assemblies that count.
+        section.note(if conditional.is_some() { plain } else { plain.and(target.clone()) });
+        conditional.into_iter().for_each(|line| section.note(Line::from(line).and(target.clone())));
         source(self).into_iter().for_each(|line| section.note(line));
         let named = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {}", index(value)));
         let of = |figure: fn(&Capability) -> Option<f64>| self.distribution.capability.as_ref().and_then(figure);

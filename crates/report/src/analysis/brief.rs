@@ -68,6 +68,10 @@ impl Report {
         if one.limited() {
             let known = one.rejects().yield_text().filter(|text| text != UNKNOWN_YIELD);
             line = line.and(format!(" {}", known.as_deref().unwrap_or("yield unknown")));
+            if let Some(given) = one.characteristic.given() {
+                let of_those = one.conditional.as_ref().map_or("unknown".to_owned(), |of| yielded(of.value));
+                line = line.and(format!(", given {given} {of_those}"));
+            }
             if let Some(target) = one.target() {
                 line = line.and(format!(" (target {})", target_yield(target)));
             }
