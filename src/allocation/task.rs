@@ -393,7 +393,9 @@ pub enum AllocateError {
         characteristic: String,
     },
     /// Required yield of the assemblies that keep another characteristic's limits.
-    #[error("`{characteristic}` is given `{given}`, and tolerances are chosen by the yield of all assemblies: leave `given` out")]
+    #[error(
+        "`{characteristic}` is given `{given}`, and tolerances are chosen by the yield of all assemblies: leave `given` out"
+    )]
     Given {
         /// Name of the characteristic.
         characteristic: String,
@@ -401,7 +403,9 @@ pub enum AllocateError {
         given: String,
     },
     /// Requirement of a characteristic that follows a choice from stock.
-    #[error("`{characteristic}` follows {choice}: its steps leave no surface to choose tolerances by; leave [[adjust]] out")]
+    #[error(
+        "`{characteristic}` follows {choice}: its steps leave no surface to choose tolerances by; leave [[adjust]] out"
+    )]
     Chosen {
         /// Name of the characteristic.
         characteristic: String,

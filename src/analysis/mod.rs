@@ -10,11 +10,11 @@ mod sampling;
 mod sobol_estimate;
 mod warnings;
 
+use crate::analysis::distribution::conditional;
 pub use crate::analysis::distribution::law_guard::{LawRefutation, LawTest};
 pub use crate::analysis::distribution::moment_basis::{Fit, NoFit, Surface};
 pub use crate::analysis::distribution::surface_law::SurfaceShares;
 pub(crate) use crate::analysis::distribution::surface_law::{law_over, surface_law};
-use crate::analysis::distribution::conditional;
 use crate::analysis::distribution::yield_selection;
 pub use crate::analysis::evaluation_summary::Account;
 pub use crate::analysis::result::characteristic::{CharacteristicAnalysis, MissingPoints, Sensitivity};

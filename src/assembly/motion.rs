@@ -191,8 +191,7 @@ impl MotionExtremes {
             }
         };
         let first = |&input: &usize| if input == t { Some(0.0) } else { all.first[place(input)?] };
-        let second =
-            |&i: &usize| if i == t { Some(0.0) } else { Some(all.second[place(i)?]? - moves(i, i)?) };
+        let second = |&i: &usize| if i == t { Some(0.0) } else { Some(all.second[place(i)?]? - moves(i, i)?) };
         let mixed = |&(i, j): &(usize, usize)| {
             if i == t || j == t {
                 return Some(0.0);

@@ -255,7 +255,9 @@ pub enum RareError {
         most: u64,
     },
     /// Characteristic whose target is that of the assemblies that keep another one's limits.
-    #[error("`{characteristic}` is given `{given}`, and rare events are shares of all assemblies: leave `given` out, or simulate")]
+    #[error(
+        "`{characteristic}` is given `{given}`, and rare events are shares of all assemblies: leave `given` out, or simulate"
+    )]
     Given {
         /// Name of the characteristic.
         characteristic: String,

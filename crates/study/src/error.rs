@@ -3,11 +3,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::compensator_fault::CompensatorFault;
 use crate::data::DataFault;
 use crate::decimal::{SAID, decimal};
 use crate::entries::vocabulary::SOLIDS;
 use crate::typing_habits::TypingHabit;
-use crate::compensator_fault::CompensatorFault;
 use crate::zone_fault::ZoneFault;
 use sensitol::allocation::CostError;
 use sensitol::assembly::NoColumn;

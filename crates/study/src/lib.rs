@@ -76,9 +76,9 @@ pub mod write;
 mod zone_fault;
 
 use crate::build::sweep;
+pub use crate::compensator_fault::CompensatorFault;
 use crate::entries::spanned;
 use crate::external_settings::Host;
-pub use crate::compensator_fault::CompensatorFault;
 pub use crate::external_settings::{Externals, JournalPlace};
 pub use crate::folder::Format;
 pub use crate::folder::StudyText;

@@ -36,8 +36,7 @@ pub(super) fn extremes(
     run: &Run<'_>,
 ) -> LeastPlaces {
     let rows = points.rows();
-    let mut found =
-        LeastPlaces { places: vec![None; rows], errors: vec![None; rows], spent: 0, reused: 0 };
+    let mut found = LeastPlaces { places: vec![None; rows], errors: vec![None; rows], spent: 0, reused: 0 };
     let mut scan = Scan { function, motion, run, found: &mut found };
     let mut at = points.clone();
     let mut values: Vec<Vec<f64>> = Vec::with_capacity(motion.steps + 1);
@@ -84,9 +83,10 @@ pub(super) fn extremes(
         }
     }
     for row in 0..rows {
-        let spread = values.iter().map(|step| step[row]).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-            [low.min(value), high.max(value)]
-        });
+        let spread = values
+            .iter()
+            .map(|step| step[row])
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
         found.places[row] = None;
         for (_, search) in searches.iter().filter(|(of, _)| *of == row) {
             let (at, value) = search.best();

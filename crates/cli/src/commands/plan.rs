@@ -201,7 +201,9 @@ impl PlanReport {
             document.line(format!("{fewer} where the model sends derivatives with its answers"));
         }
         if let Some(most) = self.evaluations_per_point {
-            document.line(format!("each point takes up to {most} evaluations of the model: a choice from stock, or a motion"));
+            document.line(format!(
+                "each point takes up to {most} evaluations of the model: a choice from stock, or a motion"
+            ));
         }
         document.line(rounds(self));
         for (index, stage) in self.stages.iter().enumerate() {

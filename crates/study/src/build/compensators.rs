@@ -35,8 +35,8 @@ pub(crate) fn problem(
     characteristics: Vec<Characteristic>,
     source: &Source,
 ) -> Result<Problem, Faults> {
-    let special = !file.adjust.0.is_empty()
-        || file.characteristics.0.iter().any(|(_, entry)| extreme(entry.get_ref()).is_some());
+    let special =
+        !file.adjust.0.is_empty() || file.characteristics.0.iter().any(|(_, entry)| extreme(entry.get_ref()).is_some());
     let nowhere = |found: StudyFault| Fault { span: None, key: String::new(), fault: Box::new(found) };
     if special && source.externals.elsewhere() {
         return Err(nowhere(CompensatorFault::EvaluatedElsewhere.into()).into());

@@ -10,6 +10,12 @@ use sensitol_numeric::names::nearest;
 
 /// Makes a dimension without tolerance of a constant, or of an input of the built-in model that the study leaves out.
 pub(crate) fn as_dimension(file: &mut StudyFile, name: &str) -> Result<(), Fault> {
+    if let Some(one) = file.adjust.0.iter().map(Spanned::get_ref).find(|one| one.dimension.get_ref() == name) {
+        let to = "a dimension that is chosen from stock".to_owned();
+        let does_not =
+            StudyFault::DoesNotApply { key: "sweep", to, instead: "sweep another dimension, or leave [[adjust]] out" };
+        return Err(fault(one.dimension.span(), "adjust", does_not));
+    }
     let dimensions = dimension::names(&file.dimensions);
     if dimensions.iter().any(|dimension| dimension.get_ref() == name) {
         return Ok(());

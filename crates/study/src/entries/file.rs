@@ -6,10 +6,10 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::entries::about::AboutEntry;
+use crate::entries::adjust_entry::{Adjustments, MotionEntry};
 pub(crate) use crate::entries::analysis_entry::{AnalysisEntry, FactorEntry, PairsEntry};
 #[cfg(feature = "schema")]
 use crate::entries::assembly_schema as assembly;
-use crate::entries::adjust_entry::{Adjustments, MotionEntry};
 use crate::entries::correlation_entry::{Correlations, Joints};
 use crate::entries::cost_entry::{CostEntry, LossEntry, RequireEntry};
 pub(crate) use crate::entries::distribution_entry::{DistributionEntry, PartEntry, distribution};

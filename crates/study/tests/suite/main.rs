@@ -1,5 +1,6 @@
 //! Tests of the format of studies.
 
+mod compensators;
 mod completeness;
 mod general;
 mod measured;
