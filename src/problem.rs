@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::assembly::{Adjusted, Adjustment, AssemblyFunction, Points, State, States};
+use crate::assembly::{Adjusted, Adjustment, AssemblyFunction, Points, State, States, SwitchKind};
 use crate::magnitude::Magnitudes;
 use crate::summary::EvaluatorSummary;
 use sensitol_numeric::characteristic::Characteristic;
@@ -451,6 +451,12 @@ impl Problem {
     /// Output of the assembly function for each characteristic.
     pub fn outputs(&self) -> &[usize] {
         &self.outputs
+    }
+
+    /// Choice from stock that a characteristic follows, in words. Returns None if it follows none, or if that is unknown.
+    pub(crate) fn choice(&self, characteristic: usize) -> Option<String> {
+        let switches = self.function.switches(self.outputs[characteristic])?.list;
+        switches.into_iter().find(|switch| switch.kind == SwitchKind::Choice).map(|switch| switch.text)
     }
 
     /// Row per characteristic, true for each dimension that it can depend on. A black box may depend on all.

@@ -7,7 +7,6 @@ use crate::allocation::requirement::quality_loss::QualityLoss;
 use crate::allocation::requirement::registry::form_of;
 use serde::Serialize;
 
-use crate::assembly::SwitchKind;
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::simulation::{SimulationError, chosen};
@@ -449,14 +448,13 @@ impl AllocateError {
 
 /// Checks that the yields are those of all assemblies, and that no value is chosen from a stock.
 fn check_conditions(problem: &Problem) -> Result<(), AllocateError> {
-    for (one, &output) in problem.characteristics().iter().zip(problem.outputs()) {
+    for (c, one) in problem.characteristics().iter().enumerate() {
         let characteristic = one.name().to_owned();
         if let Some(given) = one.given() {
             return Err(AllocateError::Given { characteristic, given: given.to_owned() });
         }
-        let switches = problem.function().switches(output).unwrap_or_default().list;
-        if let Some(switch) = switches.into_iter().find(|switch| switch.kind == SwitchKind::Choice) {
-            return Err(AllocateError::Chosen { characteristic, choice: switch.text });
+        if let Some(choice) = problem.choice(c) {
+            return Err(AllocateError::Chosen { characteristic, choice });
         }
     }
     Ok(())

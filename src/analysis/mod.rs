@@ -396,5 +396,12 @@ fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Out
 }
 
 fn of_all(problem: &Problem, outcome: &Outcome) -> Vec<(CharacteristicAnalysis, Option<Shares>)> {
-    (0..problem.characteristics().len()).map(|c| CharacteristicAnalysis::of(problem, outcome, c)).collect()
+    let of = |c: usize| {
+        let (mut one, shares) = CharacteristicAnalysis::of(problem, outcome, c);
+        if problem.choice(c).is_some() {
+            one.leave_out_linear();
+        }
+        (one, shares)
+    };
+    (0..problem.characteristics().len()).map(of).collect()
 }

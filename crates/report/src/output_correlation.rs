@@ -59,11 +59,16 @@ pub(super) fn all_limits(yield_: &str, error: &str, requirement: Option<&Judged>
 pub(super) fn conditional(one: &Characteristic, found: Option<&ConditionalYield>) -> Option<String> {
     let given = short(one.given()?);
     let Some(of) = found else { return Some(format!("yield of those that keep {given} unknown")) };
-    let error = of.interval.map(|interval| one_error(of.value, interval));
-    let text = Rejects::all(1.0 - of.value, error).yield_text().unwrap_or_else(|| yielded(of.value));
+    let text = conditional_yield(of);
     let interval = of.interval.map(|ends| ends.map(yielded));
     let interval = interval.map_or_else(String::new, |[low, high]| format!(", 95 % interval {low} to {high}"));
     Some(format!("yield of those that keep {given} {text}{interval}"))
+}
+
+/// Conditional yield with the digits that its interval supports.
+pub(super) fn conditional_yield(of: &ConditionalYield) -> String {
+    let error = of.interval.map(|interval| one_error(of.value, interval));
+    Rejects::all(1.0 - of.value, error).yield_text().unwrap_or_else(|| yielded(of.value))
 }
 
 /// Sentence with a joint yield that has a 95 % interval.

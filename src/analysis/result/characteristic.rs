@@ -166,6 +166,11 @@ impl CharacteristicAnalysis {
         Some(verdict::share(verdict::losing(around, lost)))
     }
 
+    /// Leaves out the figures of a linear model, which has none where values are chosen from stock.
+    pub(crate) fn leave_out_linear(&mut self) {
+        (self.worst_case, self.rss, self.inflated_rss, self.mean_shift_rss) = (None, None, None, None);
+    }
+
     /// Judges a requirement, which need not be the characteristic's own.
     ///
     /// The interval of a yield is [`yield_interval`](Self::yield_interval). That of a Cpk and of sigma follows from the estimated errors of

@@ -9,6 +9,7 @@ use crate::document::rejects::UNKNOWN_YIELD;
 use crate::document::terminal::unbroken;
 use crate::document::{Line, Style};
 use crate::figures::{Figures, Named};
+use crate::output_correlation::conditional_yield;
 use crate::overview::verdict;
 use crate::requirement::loud;
 use sensitol::analysis::CharacteristicAnalysis;
@@ -69,7 +70,7 @@ impl Report {
             let known = one.rejects().yield_text().filter(|text| text != UNKNOWN_YIELD);
             line = line.and(format!(" {}", known.as_deref().unwrap_or("yield unknown")));
             if let Some(given) = one.characteristic.given() {
-                let of_those = one.conditional.as_ref().map_or("unknown".to_owned(), |of| yielded(of.value));
+                let of_those = one.conditional.as_ref().map_or("unknown".to_owned(), conditional_yield);
                 line = line.and(format!(", given {given} {of_those}"));
             }
             if let Some(target) = one.target() {
