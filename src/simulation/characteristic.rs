@@ -101,7 +101,7 @@ pub struct SimulatedCharacteristic {
     pub indices: Option<Vec<SampledFactor>>,
     /// Yield of the assemblies that keep the limits of the characteristic that this one is given. None if it is given none, or no point
     /// keeps them.
-    #[serde(rename = "conditional_yield", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "conditional_yield")]
     pub conditional: Option<ConditionalYield>,
     /// Risks of the inspection, among the points of the sample. None if there is no gauge.
     pub inspection: Option<InspectionRisks>,

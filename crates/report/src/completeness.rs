@@ -59,7 +59,7 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
     });
     complete!(json, &one.distribution => DistributionFigures {
         yield_source: "/yield_source", capability: "/cpk", reject_intervals: "/ppm_above_interval", quantiles: "/quantiles",
-        coverage: "/coverage", conditional: "", inspection: "/inspection",
+        coverage: "/coverage", conditional: "/conditional_yield", inspection: "/inspection",
     });
     complete!(json, &one.range => RangeFigures {
         worst_case: "/worst_case/linear", curved: "", extremes: "/worst_case/extremes", bounds: "/worst_case/bounds",
@@ -97,7 +97,7 @@ fn simulated(json: &Value, one: &SimulatedCharacteristic) {
         skewness: "/skewness", kurtosis: "/kurtosis", quantiles: "/distribution/quantiles", yield_: "/yield",
         below: "/ppm_below", above: "/ppm_above", reject_intervals: "/ppm_below_interval", cp: "/cp", cpk: "/cpk", unfinished: "/unfinished", range: "/range",
         histogram: "/histogram", control: "/control", indices: "/sobol", inspection: "/inspection",
-        sampling: "/sampling_interval", unsettled: "", conditional: "",
+        sampling: "/sampling_interval", unsettled: "", conditional: "/conditional_yield",
     });
 }
 

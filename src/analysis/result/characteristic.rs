@@ -194,6 +194,11 @@ impl CharacteristicAnalysis {
                 None => own,
             };
         let (value, interval) = match requirement {
+            // The target is that of the assemblies that count.
+            Requirement::Yield(_) if self.characteristic.given().is_some() => {
+                let known = self.distribution.conditional.as_ref();
+                (known.map(|of| of.value), known.and_then(|of| of.interval))
+            }
             Requirement::Yield(_) => (self.distribution.capability.and_then(|of| of.yield_()), self.yield_interval()),
             Requirement::Cpk(_) => {
                 let value = self.distribution.capability.and_then(|of| of.cpk);

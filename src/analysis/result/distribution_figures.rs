@@ -32,7 +32,7 @@ pub struct DistributionFigures {
     pub coverage: Option<CoverageIntervals>,
     /// Yield of the assemblies that keep the limits of the characteristic that this one is given. None if it is given none, or if it is
     /// unknown.
-    #[serde(rename = "conditional_yield", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "conditional_yield")]
     pub conditional: Option<ConditionalYield>,
     /// Risks of the inspection. None if there is no gauge.
     pub inspection: Option<InspectionRisks>,

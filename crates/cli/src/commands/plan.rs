@@ -31,8 +31,8 @@ pub(crate) struct PlanReport {
     count: &'static str,
     varying: usize,
     evaluations: usize,
-    /// The most evaluations of the model for one point, where a value is chosen from stock or an extreme over a motion is sought.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// The most evaluations of the model for one point, where a value is chosen from stock or an extreme over a motion is sought; null where it
+    /// is one.
     evaluations_per_point: Option<usize>,
     /// Evaluations where the program sends derivatives (`"gradients":true`); null where these save none, and for formulas.
     with_gradients: Option<usize>,
