@@ -117,6 +117,17 @@ pub enum DataProblem {
         /// Columns of the file.
         known: Vec<String>,
     },
+    /// A row of influence coefficients without a name of its own.
+    #[error("{}", match other { Some(other) => format!("the output `{text}` stands in line {other} already"), None => "the output has no name".to_owned() })]
+    OutputName {
+        /// Text of the first cell.
+        text: String,
+        /// Line of the same name; None if the cell is empty.
+        other: Option<u64>,
+    },
+    /// An influence coefficient that is not given.
+    #[error("the cell is empty")]
+    EmptyCoefficient,
     /// Too few values for a distribution.
     #[error("there are {found} values{}, and at least {least} are needed", besides(*.missing))]
     TooFew {
@@ -194,6 +205,8 @@ impl DataProblem {
             Self::SerialTwice { .. } => {
                 Some("every part has a number of its own: leave one of the two rows out".into())
             }
+            Self::OutputName { .. } => Some("the first column names every output once".into()),
+            Self::EmptyCoefficient => Some("write 0 where an input has no influence".into()),
             Self::ColumnTwice { .. } => Some("one of the two needs another name".into()),
         }
     }

@@ -110,7 +110,7 @@ pub(crate) struct StudyFile {
     #[serde(default, rename = "general")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<GeneralEntry>"))]
     pub(crate) _general: Option<IgnoredAny>,
-    /// A built-in model or an external program, evaluated next to the formulas.
+    /// A built-in model, an external program or a matrix of influence coefficients, evaluated next to the formulas.
     pub(crate) model: Option<Spanned<ModelEntry>>,
     /// Options of the analysis; flags of the command line win.
     #[serde(default)]
@@ -411,7 +411,7 @@ pub(crate) struct CharacteristicEntry {
 /// `[model]`.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(extend("oneOf" = registry::one_of(["builtin", "command"]))))]
+#[cfg_attr(feature = "schema", schemars(extend("oneOf" = registry::one_of(["builtin", "command", "matrix"]))))]
 #[serde(
     deny_unknown_fields,
     expecting = "a table such as { builtin = \"engine-balance\" } or { command = [\"python3\", \"gap.py\"] }"
@@ -422,6 +422,11 @@ pub(crate) struct ModelEntry {
     pub(crate) builtin: Option<Spanned<String>>,
     /// A program and its arguments, each a text of its own, run in the study's folder; it speaks the adapter protocol.
     pub(crate) command: Option<Spanned<Vec<String>>>,
+    /// A CSV file of influence coefficients, relative to the study's folder, in place of a program: a row for every output, a column for every input,
+    /// and y0 (the outputs at zero inputs) or nominal (at the nominal dimensions). Each row becomes a linear formula.
+    #[serde(default, rename = "matrix")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
+    pub(crate) _matrix: Option<IgnoredAny>,
     /// Names that a command is sent at every point, in this order: dimensions, constants and formulas, in place of all dimensions. A
     /// formula in it drives the program. Two points that send the same numbers are one evaluation.
     pub(crate) inputs: Option<Spanned<Vec<Spanned<String>>>>,

@@ -10,6 +10,7 @@ mod general;
 mod geometry;
 mod groups;
 mod joint_entry;
+mod matrix;
 mod processes;
 mod sides;
 mod toml;
@@ -109,6 +110,7 @@ pub(super) fn expand(
     // A second time, for the blocks that geometric elements have added.
     crate::expand::joint_entry::expand(&mut expanded);
     assembly::expand(&mut expanded, written, nominal)?;
+    matrix::expand(&mut expanded, data)?;
     Ok(expanded)
 }
 

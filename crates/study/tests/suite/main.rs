@@ -3,6 +3,7 @@
 mod compensators;
 mod completeness;
 mod general;
+mod matrix;
 mod measured;
 mod nominal_kink;
 mod scaling;
