@@ -93,6 +93,7 @@ pub mod error;
 mod estimate;
 pub mod evaluation;
 pub mod extremes;
+pub mod lot;
 mod magnitude;
 pub mod method;
 pub mod method_kind;

@@ -23,7 +23,7 @@ const LAYERS: &[(&str, &[&[&str]])] = &[
         "engine",
         &[
             &["error"],
-            &["compare", "rare", "sweep", "allocation"],
+            &["compare", "rare", "sweep", "allocation", "lot"],
             &["analysis", "probe"],
             &["simulation"],
             &["extremes"],
@@ -45,7 +45,7 @@ const LAYERS: &[(&str, &[&[&str]])] = &[
         &[
             &["law"],
             &["surrogate", "verdict"],
-            &["capability"],
+            &["capability", "lot"],
             &["moments"],
             &["sampling"],
             &["correlation"],

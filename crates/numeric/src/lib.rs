@@ -15,6 +15,7 @@ pub mod inspection;
 pub mod json_form;
 pub mod labels;
 pub mod law;
+pub mod lot;
 pub mod moments;
 pub mod names;
 pub mod optimise;

@@ -16,6 +16,7 @@ mod stream;
 mod summary;
 
 pub use crate::sampling::covariance::Joint;
+pub(crate) use critical::beta_quantile;
 pub use critical::student_quantile;
 pub use draws::{Draws, Portion, Sampler, SamplingError};
 pub use draws::{Room, tails};

@@ -5,6 +5,7 @@ mod fits;
 mod joint_yields;
 mod law;
 mod law_random;
+mod lot;
 mod moments;
 mod pearson;
 mod sampling;

@@ -1,0 +1,273 @@
+//! Characteristics by the assumed parts, by the measured parts, and as measured.
+
+use serde::Serialize;
+
+use crate::analysis::{Analysis, CharacteristicAnalysis};
+use crate::lot::{DimensionInLot, LotError, LotTable};
+use crate::problem::Problem;
+use sensitol_numeric::lot::{
+    LotFigure, LotTest, MeasuredColumn, PredictedVariance, compare_means, compare_spreads, predicted_yield_interval,
+};
+use sensitol_numeric::sampling::clopper_pearson;
+
+/// A characteristic as predicted twice and as measured.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct CharacteristicInLot {
+    /// Name of the characteristic.
+    pub name: String,
+    /// Unit of the characteristic.
+    pub unit: Option<String>,
+    /// Lower and upper limit.
+    pub limits: [Option<f64>; 2],
+    /// Prediction of the study; null if the model has no result.
+    pub assumed: Option<PredictedFigures>,
+    /// Prediction with the measured parts.
+    pub by_parts: Option<PredictedFigures>,
+    /// Measured assemblies; null if there are none.
+    pub assemblies: Option<MeasuredAssemblies>,
+    /// Tests of mean and sigma of the assemblies against the study.
+    pub against_assumed: Option<[LotTest; 2]>,
+    /// Tests of mean and sigma of the assemblies against the measured parts.
+    pub against_parts: Option<[LotTest; 2]>,
+    /// Difference of the two predictions by measured dimensions, largest first.
+    pub differences: Vec<DifferenceShare>,
+    /// Difference of the means that no dimension explains alone.
+    pub mean_remainder: Option<f64>,
+    /// Difference of the variances that no dimension explains alone.
+    pub variance_remainder: Option<f64>,
+    /// Judgement.
+    pub verdict: LotVerdict,
+}
+
+/// Mean, sigma and yield of a prediction.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PredictedFigures {
+    /// Mean; its interval is that of the number of measured parts, or null if nothing measured is in it.
+    pub mean: f64,
+    /// 95 % interval of the mean.
+    pub mean_interval: Option<[f64; 2]>,
+    /// Standard deviation.
+    pub sigma: f64,
+    /// Third standardised moment.
+    pub skewness: Option<f64>,
+    /// Fourth standardised moment.
+    pub kurtosis: Option<f64>,
+    /// Yield; null without a limit.
+    #[serde(rename = "yield")]
+    pub yield_: Option<f64>,
+    /// 95 % interval of the yield by the number of measured parts.
+    pub yield_interval: Option<[f64; 2]>,
+}
+
+/// Measured assemblies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct MeasuredAssemblies {
+    /// Number of assemblies.
+    pub count: usize,
+    /// Mean.
+    pub mean: LotFigure,
+    /// Standard deviation.
+    pub sigma: LotFigure,
+    /// Share within the limits with its interval by Clopper and Pearson; null without a limit.
+    pub within: Option<LotFigure>,
+    /// Measured values.
+    #[serde(skip)]
+    pub values: Vec<f64>,
+}
+
+/// Part of one dimension in the difference of two predictions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct DifferenceShare {
+    /// The dimension.
+    pub dimension: String,
+    /// Change of the mean by it; null if its slope is unknown.
+    pub mean: Option<f64>,
+    /// Change of the variance by it; null if its share is unknown.
+    pub variance: Option<f64>,
+}
+
+/// Judgement of a characteristic.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum LotVerdict {
+    /// No assemblies were measured: the parts alone predict.
+    NotMeasured,
+    /// The assemblies agree with the study.
+    AsAssumed,
+    /// The assemblies differ from the study as the measured parts predict.
+    ByParts {
+        /// Dimension with the largest part in the difference.
+        dimension: Option<String>,
+    },
+    /// The assemblies differ from what their parts predict: the model is wrong, or a dimension is missing.
+    Unexplained {
+        /// True if the mean differs.
+        mean: bool,
+        /// True if the sigma differs.
+        sigma: bool,
+    },
+}
+
+impl CharacteristicInLot {
+    /// Sets the verdict at this level of the family.
+    pub(super) fn judge(&mut self, level: f64) {
+        let refuted = |tests: [LotTest; 2]| tests.map(|test| test.refutes(level));
+        self.verdict = match (self.against_assumed.map(refuted), self.against_parts.map(refuted)) {
+            (None, _) => LotVerdict::NotMeasured,
+            (_, Some([mean, sigma])) if mean || sigma => LotVerdict::Unexplained { mean, sigma },
+            (Some([false, false]), _) => LotVerdict::AsAssumed,
+            (Some(_), Some(_)) => {
+                LotVerdict::ByParts { dimension: self.differences.first().map(|one| one.dimension.clone()) }
+            }
+            (Some([mean, sigma]), None) => LotVerdict::Unexplained { mean, sigma },
+        };
+    }
+}
+
+/// Compares every characteristic.
+pub(super) fn compared(
+    problem: &Problem,
+    tables: &[LotTable],
+    [assumed, by_parts]: [&Analysis; 2],
+    dimensions: &[DimensionInLot],
+) -> Result<Vec<CharacteristicInLot>, LotError> {
+    let pairs = assumed.characteristics.iter().zip(&by_parts.characteristics);
+    pairs.map(|(assumed, by_parts)| one(problem, tables, [assumed, by_parts], dimensions)).collect()
+}
+
+fn one(
+    problem: &Problem,
+    tables: &[LotTable],
+    [assumed, by_parts]: [&CharacteristicAnalysis; 2],
+    dimensions: &[DimensionInLot],
+) -> Result<CharacteristicInLot, LotError> {
+    let characteristic = &assumed.characteristic;
+    let name = characteristic.name().to_owned();
+    let limits = [characteristic.limits().lower(), characteristic.limits().upper()];
+    let variance = variance(problem, by_parts, dimensions);
+    let known =
+        PredictedVariance { measured: Vec::new(), assumed: assumed.moments.map_or(f64::NAN, |of| of.variance()) };
+    let columns = tables.iter().flat_map(|table| &table.columns).find(|column| column.name == name);
+    let values: Option<Vec<f64>> = columns.map(|column| column.values.iter().copied().flatten().collect());
+    let measured = match &values {
+        None => None,
+        Some(values) => {
+            let equal =
+                || LotError::AllEqual { name: name.clone(), value: values.first().copied().unwrap_or(f64::NAN) };
+            Some(MeasuredColumn::new(values).ok_or_else(equal)?)
+        }
+    };
+    let tests = |moments: Option<sensitol_numeric::moments::Moments>, variance: &PredictedVariance| {
+        let (measured, mean) = (measured.as_ref()?, moments?.mean());
+        Some([compare_means(measured, mean, variance), compare_spreads(measured, variance)])
+    };
+    let (against_assumed, against_parts) = (tests(assumed.moments, &known), tests(by_parts.moments, &variance));
+    let differences = differences([assumed, by_parts], dimensions);
+    let left = |total: Option<f64>, part: fn(&DifferenceShare) -> Option<f64>| {
+        Some(total? - differences.iter().map(part).sum::<Option<f64>>()?)
+    };
+    let change = |of: fn(&sensitol_numeric::moments::Moments) -> f64| {
+        Some(of(by_parts.moments.as_ref()?) - of(assumed.moments.as_ref()?))
+    };
+    Ok(CharacteristicInLot {
+        unit: characteristic.unit().map(str::to_owned),
+        limits,
+        assumed: PredictedFigures::of(assumed, None),
+        by_parts: PredictedFigures::of(by_parts, Some(&variance)),
+        assemblies: measured.map(|column| MeasuredAssemblies::of(&column, limits)),
+        against_assumed,
+        against_parts,
+        mean_remainder: left(change(sensitol_numeric::moments::Moments::mean), |one| one.mean),
+        variance_remainder: left(change(sensitol_numeric::moments::Moments::variance), |one| one.variance),
+        differences,
+        verdict: LotVerdict::NotMeasured,
+        name,
+    })
+}
+
+/// Variance of the prediction by the parts: what each measured dimension explains alone, and all else.
+fn variance(problem: &Problem, analysis: &CharacteristicAnalysis, dimensions: &[DimensionInLot]) -> PredictedVariance {
+    let total = analysis.moments.map_or(f64::NAN, |of| of.variance());
+    let part = |one: &DimensionInLot| {
+        let place = problem.dimensions().iter().position(|of| of.name() == one.name)?;
+        let explained = explained(analysis, place)?;
+        (explained > 0.0).then_some((explained * total, one.parts))
+    };
+    let measured: Vec<(f64, usize)> = dimensions.iter().filter_map(part).collect();
+    let explained: f64 = measured.iter().map(|(variance, _)| variance).sum();
+    PredictedVariance { assumed: (total - explained).max(0.0), measured }
+}
+
+/// Share of the variance that a dimension explains alone.
+fn explained(analysis: &CharacteristicAnalysis, place: usize) -> Option<f64> {
+    let of = analysis.sensitivities.get(place)?;
+    Some(of.linear_share? + of.curvature_share.unwrap_or(0.0))
+}
+
+fn differences(
+    [assumed, by_parts]: [&CharacteristicAnalysis; 2],
+    dimensions: &[DimensionInLot],
+) -> Vec<DifferenceShare> {
+    let variance = |of: &CharacteristicAnalysis| of.moments.map(|moments| moments.variance());
+    let part = |one: &DimensionInLot| {
+        let place = assumed.sensitivities.iter().position(|of| of.dimension == one.name)?;
+        let slope = |of: &CharacteristicAnalysis| of.sensitivities.get(place)?.first;
+        let own = |of: &CharacteristicAnalysis| Some(explained(of, place)? * variance(of)?);
+        let by = one.mean.value - one.assumed_mean;
+        let mean = slope(assumed).zip(slope(by_parts)).map(|(a, b)| 0.5 * (a + b) * by);
+        let variance = own(assumed).zip(own(by_parts)).map(|(a, b)| b - a);
+        Some(DifferenceShare { dimension: one.name.clone(), mean, variance })
+    };
+    let mut found: Vec<DifferenceShare> = dimensions.iter().filter_map(part).collect();
+    let spread = variance(assumed).unwrap_or(1.0);
+    // A change of the mean counts by its square, which is its part in the mean squared distance from the assumed mean.
+    let size = |one: &DifferenceShare| (one.mean.unwrap_or(0.0).powi(2) + one.variance.unwrap_or(0.0).abs()) / spread;
+    found.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    found
+}
+
+impl PredictedFigures {
+    fn of(analysis: &CharacteristicAnalysis, variance: Option<&PredictedVariance>) -> Option<Self> {
+        let moments = analysis.moments?;
+        let capability = analysis.capability;
+        let rejects = capability.map_or([None; 2], |of| [of.below, of.above]);
+        let yield_interval = match variance {
+            Some(variance) => predicted_yield_interval(rejects, variance),
+            None => analysis.yield_interval(),
+        };
+        Some(Self {
+            mean: moments.mean(),
+            mean_interval: variance.map(|variance| variance.mean_interval(moments.mean())),
+            sigma: moments.sigma(),
+            skewness: moments.skewness(),
+            kurtosis: moments.kurtosis(),
+            yield_: capability.and_then(|of| of.yield_()),
+            yield_interval,
+        })
+    }
+}
+
+impl MeasuredAssemblies {
+    fn of(column: &MeasuredColumn, [lower, upper]: [Option<f64>; 2]) -> Self {
+        let count = column.count();
+        let kept =
+            |value: &&f64| lower.is_none_or(|lower| **value >= lower) && upper.is_none_or(|upper| **value <= upper);
+        let inside = column.values().iter().filter(kept).count();
+        let within = (lower.is_some() || upper.is_some()).then(|| LotFigure {
+            value: inside as f64 / count as f64,
+            interval: clopper_pearson(inside as f64, count as f64),
+        });
+        Self {
+            count,
+            mean: column.mean_figure(),
+            sigma: column.sigma_figure(0.0),
+            within,
+            values: column.values().to_vec(),
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Errors of a comparison with a lot.
+
+use crate::lot::{LotOptions, LotTable};
+use crate::method::MethodError;
+use crate::problem::Problem;
+use sensitol_numeric::correlation::CorrelationError;
+use sensitol_numeric::dimension::DimensionError;
+use sensitol_numeric::distribution::DistributionError;
+use sensitol_numeric::names::nearest;
+
+/// Fewest values of a measured dimension or characteristic.
+pub(crate) const FEWEST: usize = 5;
+
+/// Error of a comparison with a lot.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LotError {
+    /// There is no measured column.
+    #[error("the lot measures nothing of the study: a column bears the name of a dimension or of a characteristic")]
+    Nothing,
+    /// A column is neither a dimension nor a characteristic.
+    #[error("the study has no dimension or characteristic `{name}`{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
+    UnknownColumn {
+        /// Name of the column.
+        name: String,
+        /// Most similar name, if any.
+        nearest: Option<String>,
+    },
+    /// A dimension or characteristic stands in two columns.
+    #[error("`{name}` is measured in two columns: leave one out")]
+    MeasuredTwice {
+        /// Name of the column.
+        name: String,
+    },
+    /// A column has too few values.
+    #[error("`{name}` has {found} measured values, and at least {FEWEST} are needed")]
+    TooFewParts {
+        /// Name of the column.
+        name: String,
+        /// Number of values.
+        found: usize,
+    },
+    /// All values of a column are equal.
+    #[error("all measured values of `{name}` are {value}: a lot without variation has no sigma")]
+    AllEqual {
+        /// Name of the column.
+        name: String,
+        /// The value.
+        value: f64,
+    },
+    /// A measured dimension does not vary in the study.
+    #[error(
+        "`{name}` has no tolerance and no distribution in the study, so that nothing was assumed of it: give it one"
+    )]
+    NotVarying {
+        /// Name of the dimension.
+        name: String,
+    },
+    /// A choice is out of range.
+    #[error("{what} must be {range}, but is {value}")]
+    Choice {
+        /// Name of the choice.
+        what: &'static str,
+        /// Permitted range.
+        range: &'static str,
+        /// Value given.
+        value: f64,
+    },
+    /// A measured dimension is impossible.
+    #[error(transparent)]
+    Dimension(#[from] DimensionError),
+    /// A measured distribution is impossible.
+    #[error(transparent)]
+    Distribution(#[from] DistributionError),
+    /// The measured correlations are impossible together.
+    #[error(transparent)]
+    Correlation(#[from] CorrelationError),
+    /// The method does not fit the problem.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+}
+
+/// Checks names, counts and choices.
+pub(super) fn checked(problem: &Problem, tables: &[LotTable], options: &LotOptions) -> Result<(), LotError> {
+    let range = |what, range, value| Err(LotError::Choice { what, range, value });
+    if !(options.level > 0.0 && options.level < 1.0) {
+        return range("the family-wise level", "between 0 and 1", options.level);
+    }
+    let parts = options.assumed_parts;
+    if !(parts == 0.0 || parts >= 2.0 && parts.is_finite()) {
+        return range("the weight of the study in parts", "0, or 2 or more", parts);
+    }
+    let columns: Vec<_> = tables.iter().flat_map(|table| &table.columns).collect();
+    if columns.is_empty() {
+        return Err(LotError::Nothing);
+    }
+    for (place, column) in columns.iter().enumerate() {
+        let name = column.name.clone();
+        let dimension = problem.dimensions().iter().find(|one| one.name() == name);
+        let known = problem.characteristics().iter().any(|one| one.name() == name);
+        if dimension.is_none() && !known {
+            let dimensions = problem.dimensions().iter().map(|one| one.name());
+            let all = dimensions.chain(problem.characteristics().iter().map(|one| one.name()));
+            return Err(LotError::UnknownColumn { nearest: nearest(&name, all).map(str::to_owned), name });
+        }
+        if columns[..place].iter().any(|earlier| earlier.name == name) {
+            return Err(LotError::MeasuredTwice { name });
+        }
+        if dimension.is_some_and(|one| one.distribution().is_none()) {
+            return Err(LotError::NotVarying { name });
+        }
+        let values: Vec<f64> = column.values.iter().copied().flatten().collect();
+        if values.len() < FEWEST {
+            return Err(LotError::TooFewParts { name, found: values.len() });
+        }
+        if values.iter().all(|value| *value == values[0]) {
+            return Err(LotError::AllEqual { name, value: values[0] });
+        }
+    }
+    Ok(())
+}
