@@ -6,7 +6,7 @@ use crate::analysis::{Analysis, CharacteristicAnalysis};
 use crate::lot::{DimensionInLot, LotError, LotTable};
 use crate::problem::Problem;
 use sensitol_numeric::lot::{
-    LotFigure, LotTest, MeasuredColumn, PredictedVariance, compare_means, compare_spreads, predicted_yield_interval,
+    LotFigure, LotSample, LotTest, PredictedVariance, compare_means, compare_spreads, predicted_yield_interval,
 };
 use sensitol_numeric::sampling::clopper_pearson;
 
@@ -159,7 +159,7 @@ fn one(
         Some(values) => {
             let equal =
                 || LotError::AllEqual { name: name.clone(), value: values.first().copied().unwrap_or(f64::NAN) };
-            Some(MeasuredColumn::new(values).ok_or_else(equal)?)
+            Some(LotSample::new(values).ok_or_else(equal)?)
         }
     };
     let tests = |moments: Option<sensitol_numeric::moments::Moments>, variance: &PredictedVariance| {
@@ -253,7 +253,7 @@ impl PredictedFigures {
 }
 
 impl MeasuredAssemblies {
-    fn of(column: &MeasuredColumn, [lower, upper]: [Option<f64>; 2]) -> Self {
+    fn of(column: &LotSample, [lower, upper]: [Option<f64>; 2]) -> Self {
         let count = column.count();
         let kept =
             |value: &&f64| lower.is_none_or(|lower| **value >= lower) && upper.is_none_or(|upper| **value <= upper);

@@ -7,8 +7,8 @@ use crate::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::Distribution;
 use sensitol_numeric::lot::{
-    Departure, LotFigure, LotTest, MeasuredColumn, Posterior, compare_groups, correlation_estimate,
-    likeliest_departure, linear_trend, performance,
+    Departure, LotFigure, LotSample, LotTest, Posterior, compare_groups, correlation_estimate, likeliest_departure,
+    linear_trend, performance,
 };
 
 /// A measured dimension against its assumption.
@@ -57,7 +57,7 @@ pub struct DimensionInLot {
     pub posterior: Option<Posterior>,
     /// Measured values in the order of measurement.
     #[serde(skip)]
-    pub column: Option<MeasuredColumn>,
+    pub column: Option<LotSample>,
 }
 
 /// Posterior of a dimension in JSON.
@@ -129,7 +129,7 @@ impl DimensionInLot {
             column.values.iter().enumerate().filter_map(|(row, value)| Some((row, (*value)?))).collect();
         let values: Vec<f64> = measured.iter().map(|(_, value)| *value).collect();
         let name = dimension.name().to_owned();
-        let Some(found) = MeasuredColumn::new(&values) else {
+        let Some(found) = LotSample::new(&values) else {
             return Err(LotError::AllEqual { name, value: values.first().copied().unwrap_or(f64::NAN) });
         };
         let tests = found.tests(law);

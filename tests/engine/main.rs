@@ -17,6 +17,7 @@ mod implicit;
 mod intervals;
 mod law_quantiles;
 mod law_studies;
+mod lot;
 mod measured_yields;
 mod methods;
 mod plans;

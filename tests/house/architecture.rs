@@ -45,7 +45,7 @@ const LAYERS: &[(&str, &[&[&str]])] = &[
         &[
             &["law"],
             &["surrogate", "verdict"],
-            &["capability", "lot"],
+            &["capability", "lot", "distribution_bounds"],
             &["moments"],
             &["sampling"],
             &["correlation"],

@@ -8,6 +8,7 @@ use crate::commands::examples::ExamplesArgs;
 use crate::commands::journal::JournalArgs;
 use crate::import_args::ImportArgs;
 pub(super) use crate::init_args::InitArgs;
+pub(super) use crate::lot_args::CompareLotArgs;
 pub(super) use crate::page_args::{ServeArgs, WorkbenchArgs};
 use crate::shared_args::OUTPUT;
 pub(super) use crate::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
@@ -76,6 +77,11 @@ pub(super) enum Command {
     /// Every method that fits, against a reference: speed and accuracy
     #[command(after_help = "Examples:\n  sensitol compare examples/stacked-blocks/study.toml --svg trade.svg")]
     Compare(CompareArgs),
+    /// A measured lot against the study: parts, assemblies, and what explains their difference
+    #[command(
+        after_help = "Examples:\n  sensitol compare-lot examples/housing-lot/study.toml examples/housing-lot/parts.csv examples/housing-lot/assemblies.csv --html lot.html"
+    )]
+    CompareLot(CompareLotArgs),
     /// Mean and quantile band along a parameter
     #[command(
         after_help = "Examples:\n  sensitol sweep examples/connecting-rod/crank-angle.toml --over theta=-180:180:73 --svg band.svg"

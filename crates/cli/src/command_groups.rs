@@ -8,7 +8,7 @@ use crate::args::Arguments;
 
 /// Commands by task, in the order in which people need them.
 const GROUPS: [(&str, &[&str]); 5] = [
-    ("Analyse", &["analyze", "simulate", "merge", "compare", "sweep", "watch", "pearson"]),
+    ("Analyse", &["analyze", "simulate", "merge", "compare", "compare-lot", "sweep", "watch", "pearson"]),
     ("Allocate tolerances", &["allocate"]),
     ("Write a study", &["init", "examples", "import", "check", "expand", "models", "workbench", "serve", "schema"]),
     ("External models", &["probe", "plan", "evaluate", "journal"]),

@@ -8,6 +8,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use crate::advice;
 use sensitol::allocation::AllocateError;
 use sensitol::compare::CompareError;
+use sensitol::lot::LotError;
 use sensitol::method::MethodError;
 use sensitol::problem::ProblemError;
 use sensitol::rare::RareError;
@@ -99,6 +100,8 @@ pub(super) enum Failure {
     Rare(#[from] RareError),
     #[error(transparent)]
     Compare(#[from] CompareError),
+    #[error(transparent)]
+    Lot(#[from] LotError),
     #[error(transparent)]
     Sweep(#[from] SweepError),
     #[error(transparent)]
@@ -194,7 +197,9 @@ impl Failure {
     /// Returns the actions to take, if the library knows any.
     fn advice(&self) -> Vec<Advice> {
         match self {
-            Self::Method(error) | Self::Sweep(SweepError::Method(error)) => error.advice(),
+            Self::Method(error) | Self::Sweep(SweepError::Method(error)) | Self::Lot(LotError::Method(error)) => {
+                error.advice()
+            }
             Self::Simulation(error)
             | Self::Rare(RareError::Simulation(error))
             | Self::Compare(CompareError::Reference(error)) => error.advice(),

@@ -13,6 +13,7 @@ mod files;
 mod import_args;
 mod init_args;
 mod interrupt;
+mod lot_args;
 mod output;
 mod own_file;
 mod page_args;
@@ -37,6 +38,7 @@ use crate::commands::expand;
 use crate::commands::import;
 use crate::commands::init;
 use crate::commands::journal;
+use crate::commands::lot;
 use crate::commands::models;
 use crate::commands::pearson;
 use crate::commands::plan;
@@ -165,6 +167,7 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Simulate(asked) => simulate::run(asked, style),
         Command::Merge(asked) => shard::merge(asked, style),
         Command::Compare(asked) => compare::run(asked, style),
+        Command::CompareLot(asked) => lot::run(asked, style),
         Command::Sweep(asked) => sweep::run(asked, style),
         Command::Watch(asked) => watch::run(asked, style),
         Command::Allocate(asked) => allocate::run(asked, style),

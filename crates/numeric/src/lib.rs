@@ -9,6 +9,7 @@ pub mod characteristic;
 pub mod correlation;
 pub mod dimension;
 pub mod distribution;
+pub mod distribution_bounds;
 pub mod elementary;
 pub mod fits;
 pub mod inspection;

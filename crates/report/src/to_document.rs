@@ -1,7 +1,9 @@
 //! Every report as a document and as a page.
 
 use crate::document::Document;
-use crate::{AllocationReport, CompareReport, DifferenceReport, RareReport, Report, SimulationReport, SweepReport};
+use crate::{
+    AllocationReport, CompareReport, DifferenceReport, LotReport, RareReport, Report, SimulationReport, SweepReport,
+};
 
 /// A report that can be shown to readers.
 /// ```
@@ -50,4 +52,5 @@ to_document! {
     SweepReport by crate::html::sweep_html,
     AllocationReport by crate::html::allocate_html,
     DifferenceReport by crate::html::difference_html,
+    LotReport by crate::html::lot_html,
 }

@@ -62,6 +62,9 @@ mod folder;
 #[cfg(feature = "import")]
 pub mod import;
 mod labels;
+#[cfg(feature = "import")]
+mod lot_table;
+mod posterior_text;
 mod rewrite;
 mod scene;
 #[cfg(feature = "schema")]
@@ -88,6 +91,9 @@ pub use assembly_poses::AssemblyPoses;
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use files::{FileRole, NamedFile};
+#[cfg(feature = "import")]
+pub use lot_table::{LotTableFault, ReadLot, read_lot};
+pub use posterior_text::{UpdatedSpread, UpdatedStudy};
 pub use rewrite::{RewriteError, Rewritten};
 pub use scene::{
     AssemblyScene, CompletenessGap, DimensionOwner, FeatureOutline, MeasureMark, RigidDisplacement, SceneDeviation,

@@ -158,7 +158,7 @@ impl Study {
         }
     }
 
-    fn read_again(&self, text: &str) -> Result<Self, RewriteError> {
+    pub(super) fn read_again(&self, text: &str) -> Result<Self, RewriteError> {
         let externals = Externals { host: self.host.clone(), ..Externals::default() };
         Self::parse(text, self.format, &self.name, self.place.clone(), externals, None)
             .map_err(|error| RewriteError::Unreadable(Box::new(error)))
@@ -217,7 +217,7 @@ fn inline(text: &str, line: &Tree) -> String {
 }
 
 impl Tree {
-    fn entry(&self, name: &str) -> Option<&Self> {
+    pub(super) fn entry(&self, name: &str) -> Option<&Self> {
         let Value::Table(entries) = &self.value else { return None };
         entries.iter().find(|(key, _)| key.name == name).map(|(_, value)| value)
     }

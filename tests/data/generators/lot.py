@@ -76,11 +76,9 @@ def uniform_shape(values):
     """P-value of a uniform shape with mean and sigma of the values, by 200,000 samples."""
     def statistic(rows):
         u = np.sort((rows - rows.mean(1, keepdims=True)) / rows.std(1, ddof=1, keepdims=True), axis=1)
-        low = np.maximum((u + np.sqrt(3)) / (2 * np.sqrt(3)), 0).clip(1e-300, 1)
-        high = np.maximum((np.sqrt(3) - u) / (2 * np.sqrt(3)), 0).clip(1e-300, 1)
+        cdf = ((u + np.sqrt(3)) / (2 * np.sqrt(3))).clip(0, 1)
         n = rows.shape[1]
-        weight = 2 * np.arange(n) + 1
-        return -n - (weight * (np.log(low) + np.log(high[:, ::-1]))).sum(1) / n
+        return 1 / (12 * n) + ((cdf - (2 * np.arange(n) + 1) / (2 * n)) ** 2).sum(1)
 
     drawn = statistic(rng.uniform(size=(200_000, len(values))))
     found = statistic(values[None, :])[0]

@@ -91,7 +91,7 @@ pub(crate) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
 }
 
 /// Refuses to write into another folder: relative paths in the study would lead elsewhere.
-fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Failure> {
+pub(crate) fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Failure> {
     let folder = |path: &Path| {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         std::fs::canonicalize(folder).ok()

@@ -12,6 +12,7 @@ pub(crate) mod import;
 pub(crate) mod import_step;
 pub(crate) mod init;
 pub(crate) mod journal;
+pub(crate) mod lot;
 pub(crate) mod models;
 pub(crate) mod pearson;
 pub(crate) mod plan;

@@ -11,7 +11,8 @@ use crate::failure_report::ErrorDocument;
 use crate::files::Files;
 use crate::output::json;
 use sensitol_report::{
-    AllocationReport, CompareReport, DifferenceReport, RareReport, Report, SCHEMA, SimulationReport, SweepReport,
+    AllocationReport, CompareReport, DifferenceReport, LotReport, RareReport, Report, SCHEMA, SimulationReport,
+    SweepReport,
 };
 use sensitol_study::schema;
 
@@ -28,12 +29,13 @@ pub(crate) fn run(asked: &SchemaArgs) -> Result<Exit, Failure> {
 fn reports() -> Value {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.contract = Contract::Serialize);
     let mut generator = settings.into_generator();
-    let commands: [(&str, Value); 16] = [
+    let commands: [(&str, Value); 17] = [
         ("analyze", of::<Report>(&mut generator)),
         ("analyze-compare", of::<DifferenceReport>(&mut generator)),
         ("simulate", of::<SimulationReport>(&mut generator)),
         ("simulate-rare", of::<RareReport>(&mut generator)),
         ("compare", of::<CompareReport>(&mut generator)),
+        ("compare-lot", of::<LotReport>(&mut generator)),
         ("sweep", of::<SweepReport>(&mut generator)),
         ("allocate", of::<AllocationReport>(&mut generator)),
         ("plan", of::<plan::PlanReport>(&mut generator)),

@@ -2,7 +2,7 @@
 
 use crate::distribution::Distribution;
 use crate::lot::reference_law::{chi_squared_quantile, chi_squared_two_sided, student_two_sided};
-use crate::lot::shape::{anderson_darling_normal, anderson_darling_of_shape};
+use crate::lot::shape::{anderson_darling_normal, cramer_von_mises_of_shape};
 use crate::lot::{LotFigure, LotTest, SIDE};
 use crate::sampling::student_quantile;
 
@@ -11,7 +11,7 @@ const LEAST_OF_SHAPE: usize = 8;
 
 /// Measured values of one dimension with their mean and standard deviation.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MeasuredColumn {
+pub struct LotSample {
     values: Vec<f64>,
     mean: f64,
     sigma: f64,
@@ -28,14 +28,14 @@ pub struct ColumnTests {
     pub shape: Option<LotTest>,
 }
 
-impl MeasuredColumn {
+impl LotSample {
     /// Returns the column of these values. Returns None of fewer than two different values.
     ///
     /// ```
-    /// use sensitol_numeric::lot::MeasuredColumn;
-    /// let column = MeasuredColumn::new(&[9.0, 10.0, 11.0]).unwrap();
+    /// use sensitol_numeric::lot::LotSample;
+    /// let column = LotSample::new(&[9.0, 10.0, 11.0]).unwrap();
     /// assert_eq!((column.mean(), column.sigma()), (10.0, 1.0));
-    /// assert!(MeasuredColumn::new(&[9.0, 9.0]).is_none());
+    /// assert!(LotSample::new(&[9.0, 9.0]).is_none());
     /// ```
     pub fn new(values: &[f64]) -> Option<Self> {
         let origin = *values.first()?;
@@ -95,8 +95,8 @@ impl MeasuredColumn {
 
     /// Tests of mean, standard deviation and shape against an assumed distribution.
     ///
-    /// The mean has Student's test, the variance the chi-squared test with the degrees of freedom of the assumed kurtosis, and the shape
-    /// the test of Anderson and Darling with mean and sigma of the values.
+    /// The mean has Student's test, the variance the chi-squared test with the degrees of freedom of the assumed kurtosis. A normal shape
+    /// has the test of Anderson and Darling, another one that of Cramér and von Mises, with mean and sigma of the values.
     pub fn tests(&self, assumed: &dyn Distribution) -> ColumnTests {
         let n = self.count() as f64;
         let t = (self.mean - assumed.mean()) / (self.sigma / n.sqrt());
@@ -105,7 +105,7 @@ impl MeasuredColumn {
         let ratio = freedom * (self.sigma / assumed.sigma()).powi(2);
         let shape = (self.count() >= LEAST_OF_SHAPE).then(|| match assumed.name() {
             "normal" => Some(anderson_darling_normal(self).1),
-            _ => anderson_darling_of_shape(self, assumed),
+            _ => cramer_von_mises_of_shape(self, assumed),
         });
         ColumnTests {
             mean: LotTest::of(student_two_sided(t, n - 1.0)),

@@ -7,7 +7,7 @@
 use serde::Serialize;
 
 use crate::distribution::{outliers, standard_normal};
-use crate::lot::MeasuredColumn;
+use crate::lot::LotSample;
 
 /// Steps of expectation and maximisation. The likelihood of well separated parts is at rest after some ten.
 const STEPS: usize = 200;
@@ -53,12 +53,12 @@ pub enum Departure {
 /// Likeliest form of values that a test of normality refutes. Returns None of fewer than 15 values.
 ///
 /// ```
-/// use sensitol_numeric::lot::{Departure, MeasuredColumn, likeliest_departure};
+/// use sensitol_numeric::lot::{Departure, LotSample, likeliest_departure};
 /// let two_tools: Vec<f64> = (0..40).map(|i| f64::from(i % 2) * 10.0 + f64::from(i % 5) * 0.3).collect();
-/// let found = likeliest_departure(&MeasuredColumn::new(&two_tools).unwrap());
+/// let found = likeliest_departure(&LotSample::new(&two_tools).unwrap());
 /// assert!(matches!(found, Some(Departure::Mixture { share, .. }) if (share - 0.5).abs() < 1e-6));
 /// ```
-pub fn likeliest_departure(column: &MeasuredColumn) -> Option<Departure> {
+pub fn likeliest_departure(column: &LotSample) -> Option<Departure> {
     let values = column.values();
     if values.len() < FEWEST {
         return None;

@@ -11,7 +11,7 @@
 //! Source: A. Gelman et al., Bayesian Data Analysis, 3rd edition (2013), section 3.3.
 
 use crate::lot::reference_law::chi_squared_quantile;
-use crate::lot::{LotFigure, MeasuredColumn, SIDE};
+use crate::lot::{LotFigure, LotSample, SIDE};
 use crate::sampling::student_quantile;
 
 /// Assumed mean and sigma of a dimension, with their weight in parts.
@@ -42,14 +42,14 @@ impl NormalPrior {
     /// Posterior after a lot.
     ///
     /// ```
-    /// use sensitol_numeric::lot::{MeasuredColumn, NormalPrior};
-    /// let column = MeasuredColumn::new(&[1.0, 2.0, 3.0]).unwrap();
+    /// use sensitol_numeric::lot::{LotSample, NormalPrior};
+    /// let column = LotSample::new(&[1.0, 2.0, 3.0]).unwrap();
     /// let alone = NormalPrior { mean: 0.0, sigma: 1.0, parts: 0.0 }.updated(&column);
     /// assert_eq!((alone.mean.value, alone.sigma.value, alone.weight), (2.0, 1.0, 1.0));
     /// let heavy = NormalPrior { mean: 0.0, sigma: 1.0, parts: 3.0 }.updated(&column);
     /// assert_eq!(heavy.mean.value, 1.0);
     /// ```
-    pub fn updated(&self, column: &MeasuredColumn) -> Posterior {
+    pub fn updated(&self, column: &LotSample) -> Posterior {
         let n = column.count() as f64;
         let squares = (n - 1.0) * column.sigma().powi(2);
         let weight = n / (n + self.parts);

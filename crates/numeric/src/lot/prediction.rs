@@ -2,7 +2,7 @@
 
 use crate::distribution::standard_normal;
 use crate::lot::reference_law::{fisher_sf, student_two_sided};
-use crate::lot::{LotTest, MeasuredColumn, SIDE};
+use crate::lot::{LotSample, LotTest, SIDE};
 use crate::sampling::student_quantile;
 
 /// Degrees of freedom that count as infinitely many.
@@ -48,7 +48,7 @@ impl PredictedVariance {
 ///
 /// Source: B. L. Welch, The generalization of "Student's" problem when several different population variances are involved,
 /// Biometrika 34 (1947).
-pub fn compare_means(measured: &MeasuredColumn, predicted: f64, variance: &PredictedVariance) -> LotTest {
+pub fn compare_means(measured: &LotSample, predicted: f64, variance: &PredictedVariance) -> LotTest {
     let n = measured.count() as f64;
     let own = measured.sigma().powi(2) / n;
     let whole = own + variance.of_mean();
@@ -59,7 +59,7 @@ pub fn compare_means(measured: &MeasuredColumn, predicted: f64, variance: &Predi
 }
 
 /// Two-sided test of the variance of measured assemblies against a predicted one.
-pub fn compare_spreads(measured: &MeasuredColumn, variance: &PredictedVariance) -> LotTest {
+pub fn compare_spreads(measured: &LotSample, variance: &PredictedVariance) -> LotTest {
     let freedom = [measured.count() as f64 - 1.0, variance.freedom()];
     let ratio = measured.sigma().powi(2) / variance.total();
     let above = fisher_sf(ratio, freedom);

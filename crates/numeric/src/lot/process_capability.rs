@@ -2,7 +2,7 @@
 
 use crate::distribution::standard_normal;
 use crate::lot::reference_law::chi_squared_quantile;
-use crate::lot::{LotFigure, MeasuredColumn, SIDE};
+use crate::lot::{LotFigure, LotSample, SIDE};
 
 /// Performance indices of measured parts against a tolerance band.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +16,7 @@ pub struct ProcessPerformance {
 /// Indices Pp and Ppk of normal parts, with 95 % intervals: exact for Pp, an approximation for Ppk. Returns None without a limit.
 ///
 /// Source: ISO 22514-2; A. F. Bissell, How reliable is your capability index?, Applied Statistics 39 (1990).
-pub fn performance(column: &MeasuredColumn, limits: [Option<f64>; 2]) -> Option<ProcessPerformance> {
+pub fn performance(column: &LotSample, limits: [Option<f64>; 2]) -> Option<ProcessPerformance> {
     let (mean, sigma, n) = (column.mean(), column.sigma(), column.count() as f64);
     let pp = match limits {
         [Some(lower), Some(upper)] => {

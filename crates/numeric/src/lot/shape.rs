@@ -1,15 +1,16 @@
 //! Test of the shape of a distribution, with mean and sigma of the values.
 //!
-//! The statistic is that of Anderson and Darling (1952), which weights both tails. For a normal shape its p-value has a closed form. For
-//! another shape it comes from samples of that shape, each standardised by its own mean and sigma (parametric bootstrap: Stute, Gonzalez
-//! Manteiga, Presedo Quindimil, Source code based bootstrap of goodness of fit, Metrika 40 (1993)). Below their least share the tail is
-//! continued as an exponential one (Knijnenburg et al., Fewer permutations, more accurate P-values, Bioinformatics 25 (2009)).
+//! For a normal shape the statistic is that of Anderson and Darling (1952), whose p-value has a closed form. For another shape it is that of
+//! Cramér and von Mises, since a standardised value beyond the ends of a bounded shape would decide the other one alone. Its p-value comes
+//! from samples of that shape, each standardised by its own mean and sigma (W. Stute, W. González Manteiga, M. Presedo Quindimil, Bootstrap
+//! based goodness-of-fit-tests, Metrika 40 (1993)). Below their least share the tail is continued as an exponential one (T. A. Knijnenburg
+//! et al., Fewer permutations, more accurate P-values, Bioinformatics 25 (2009)).
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::distribution::{Distribution, standard_normal};
-use crate::lot::MeasuredColumn;
+use crate::lot::LotSample;
 
 /// Seed of the samples, so that a p-value is always the same.
 const SEED: u64 = 1;
@@ -29,7 +30,7 @@ const LEAST: f64 = 1e-300;
 /// Accuracy: the p-value is that of a fit, with two to three digits.
 ///
 /// Source: R. B. D'Agostino, M. A. Stephens, Goodness-of-Fit Techniques (1986), table 4.9.
-pub fn anderson_darling_normal(column: &MeasuredColumn) -> (f64, f64) {
+pub fn anderson_darling_normal(column: &LotSample) -> (f64, f64) {
     let standard = |value: &f64| (value - column.mean()) / column.sigma();
     let statistic = statistic(column.values(), &|value| {
         let u = standard(&value);
@@ -57,14 +58,18 @@ fn of_normal(a: f64) -> f64 {
 /// it has steps.
 ///
 /// Accuracy: the standard error of a share of up to 2000 samples.
-pub fn anderson_darling_of_shape(column: &MeasuredColumn, assumed: &dyn Distribution) -> Option<f64> {
+pub fn cramer_von_mises_of_shape(column: &LotSample, assumed: &dyn Distribution) -> Option<f64> {
     let law = assumed.probability().filter(|law| law.atoms().is_empty())?;
     let (mean, sigma) = (assumed.mean(), assumed.sigma());
-    let of = |column: &MeasuredColumn| {
-        statistic(column.values(), &|value| {
+    let of = |column: &LotSample| {
+        let mut sorted = column.values().to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let n = sorted.len() as f64;
+        let off = |(place, value): (usize, &f64)| {
             let placed = mean + sigma * (value - column.mean()) / column.sigma();
-            [law.cdf(placed), law.sf(placed)]
-        })
+            law.cdf(placed) - (2 * place + 1) as f64 / (2.0 * n)
+        };
+        1.0 / (12.0 * n) + sorted.iter().enumerate().map(|one| off(one).powi(2)).sum::<f64>()
     };
     let found = of(column);
     let n = column.count();
@@ -74,7 +79,7 @@ pub fn anderson_darling_of_shape(column: &MeasuredColumn, assumed: &dyn Distribu
     let mut drawn: Vec<f64> = Vec::with_capacity(samples);
     for _ in 0..samples {
         law.fill(&mut rng, &mut values);
-        drawn.extend(MeasuredColumn::new(&values).map(|sample| of(&sample)));
+        drawn.extend(LotSample::new(&values).map(|sample| of(&sample)));
     }
     drawn.sort_unstable_by(|a, b| b.total_cmp(a));
     let kept = (TAIL * drawn.len() as f64) as usize;

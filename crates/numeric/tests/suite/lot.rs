@@ -4,9 +4,9 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol_numeric::distribution::{Distribution, Normal, Uniform, standard_normal};
 use sensitol_numeric::lot::{
-    Departure, LotTest, MeasuredColumn, NormalPrior, PredictedVariance, anderson_darling_normal,
-    anderson_darling_of_shape, compare_groups, compare_means, compare_spreads, correlation_estimate, fisher_quantile,
-    fisher_sf, holm, likeliest_departure, linear_trend, performance,
+    Departure, LotSample, LotTest, NormalPrior, PredictedVariance, anderson_darling_normal, compare_groups,
+    compare_means, compare_spreads, correlation_estimate, cramer_von_mises_of_shape, fisher_quantile, fisher_sf, holm,
+    likeliest_departure, linear_trend, performance,
 };
 use sensitol_testing::{close, data};
 
@@ -14,8 +14,8 @@ fn numbers(value: &serde_json::Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
 }
 
-fn column(value: &serde_json::Value) -> MeasuredColumn {
-    MeasuredColumn::new(&numbers(value)).unwrap()
+fn column(value: &serde_json::Value) -> LotSample {
+    LotSample::new(&numbers(value)).unwrap()
 }
 
 /// Closed forms: 1e-9 is far above the rounding of both programs, far below any slip of a formula. Values near 1e6 with a sigma of 1e-3
@@ -102,12 +102,12 @@ fn posteriors_are_those_of_an_integration() {
 #[test]
 fn the_shape_of_a_uniform_distribution_is_tested() {
     for case in data("lot.json")["uniform_shapes"].as_array().unwrap() {
-        let found = anderson_darling_of_shape(&column(&case["values"]), &Uniform::about(5.0, 2.0).unwrap()).unwrap();
+        let found = cramer_von_mises_of_shape(&column(&case["values"]), &Uniform::about(5.0, 2.0).unwrap()).unwrap();
         close(found, case["p"].as_f64().unwrap(), 0.035, 1.0);
     }
     // Two far groups cannot come from a uniform distribution: the tail beyond the samples is continued.
     let far: Vec<f64> = (0..60).map(|i| f64::from(i % 2) * 10.0 + f64::from(i % 7) * 0.01).collect();
-    let p = anderson_darling_of_shape(&MeasuredColumn::new(&far).unwrap(), &Uniform::about(0.0, 1.0).unwrap()).unwrap();
+    let p = cramer_von_mises_of_shape(&LotSample::new(&far).unwrap(), &Uniform::about(0.0, 1.0).unwrap()).unwrap();
     assert!(p > 0.0 && p < 1e-5, "{p}");
 }
 
@@ -132,7 +132,7 @@ fn intervals_of_lots_hold_as_often_as_they_say() {
     for lot in 0..LOTS {
         let count = 10 + lot * 29 % 291;
         let (mean, sigma) = (rng.random_range(-3.0..3.0), rng.random_range(0.5..2.0));
-        let column = MeasuredColumn::new(&normals(&mut rng, count, mean, sigma)).unwrap();
+        let column = LotSample::new(&normals(&mut rng, count, mean, sigma)).unwrap();
         let after = NormalPrior { mean: 0.0, sigma: 1.0, parts: 0.0 }.updated(&column);
         let indices = performance(&column, [Some(-6.0), Some(6.0)]).unwrap();
         let truth = [
@@ -164,7 +164,7 @@ fn posterior_intervals_hold_for_processes_of_the_prior() {
         let squares: f64 = normals(&mut rng, 29, 0.0, 1.0).iter().map(|z| z * z).sum();
         let sigma = prior.sigma * (29.0 / squares).sqrt();
         let mean = normals(&mut rng, 1, prior.mean, sigma / 30f64.sqrt())[0];
-        let column = MeasuredColumn::new(&normals(&mut rng, count, mean, sigma)).unwrap();
+        let column = LotSample::new(&normals(&mut rng, count, mean, sigma)).unwrap();
         let after = prior.updated(&column);
         for ((_, held), ([low, high], value)) in
             found.iter_mut().zip([(after.mean.interval, mean), (after.sigma.interval, sigma)])
@@ -213,7 +213,7 @@ fn a_right_study_is_refuted_as_seldom_as_stated() {
     for _ in 0..LOTS {
         let mut tests = Vec::new();
         for _ in 0..4 {
-            let column = MeasuredColumn::new(&normals(&mut rng, 40, 2.0, 0.5)).unwrap();
+            let column = LotSample::new(&normals(&mut rng, 40, 2.0, 0.5)).unwrap();
             let found = column.tests(&law);
             tests.extend([Some(found.mean), Some(found.sigma), found.shape].into_iter().flatten());
         }
@@ -226,7 +226,7 @@ fn a_right_study_is_refuted_as_seldom_as_stated() {
 #[test]
 fn forms_are_named() {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(63);
-    let name = |values: &[f64]| likeliest_departure(&MeasuredColumn::new(values).unwrap());
+    let name = |values: &[f64]| likeliest_departure(&LotSample::new(values).unwrap());
     let mut two = normals(&mut rng, 60, 0.0, 1.0);
     two.extend(normals(&mut rng, 40, 6.0, 1.0));
     let Some(Departure::Mixture { means, share }) = name(&two) else { panic!("{:?}", name(&two)) };
@@ -252,7 +252,7 @@ fn sigma_of_a_known_shape_has_the_freedom_of_its_kurtosis() {
     let mut inside = 0;
     for _ in 0..LOTS {
         let values: Vec<f64> = (0..50).map(|_| rng.random_range(-1.0..1.0)).collect();
-        let [low, high] = MeasuredColumn::new(&values).unwrap().sigma_figure(excess).interval;
+        let [low, high] = LotSample::new(&values).unwrap().sigma_figure(excess).interval;
         inside += usize::from(low <= law.sigma() && law.sigma() <= high);
     }
     held(&[("sigma", inside)], LOTS);

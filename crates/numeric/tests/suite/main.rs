@@ -1,5 +1,6 @@
 //! Tests of distributions, moments, Pearson system, samples and surface distributions.
 
+mod distribution_bounds;
 mod distributions;
 mod fits;
 mod joint_yields;

@@ -30,7 +30,7 @@ use crate::document::html::{blocks, head as summary, sections};
 use crate::document::number::significant;
 use crate::document::svg::escaped;
 use crate::head::findings;
-use crate::{DifferenceReport, Head, WarningReport};
+use crate::{DifferenceReport, Head, LotReport, WarningReport};
 use sensitol::summary::RunSummary;
 
 const STYLE: &str = include_str!("page.css");
@@ -82,6 +82,15 @@ pub(crate) fn difference_html(report: &DifferenceReport) -> String {
         fact("sensitol", format!("{}, report schema {}", report.head.sensitol, report.head.schema)),
     ];
     let parts = [summary(&document), sections(&document), String::new(), terms::terms("analyze", false)];
+    render(&report.head, facts, parts, ScriptData::default())
+}
+
+/// Writes a comparison with a lot as one page of HTML: verdicts, parts, and an overlay for every characteristic.
+pub fn lot_html(report: &LotReport) -> String {
+    let document = report.document();
+    let mut facts = vec![fact("lot", report.lot.join(", "))];
+    facts.extend(provenance(&report.head, &report.comparison.run));
+    let parts = [summary(&document), sections(&document), String::new(), terms::terms("compare-lot", false)];
     render(&report.head, facts, parts, ScriptData::default())
 }
 

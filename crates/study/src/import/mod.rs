@@ -25,6 +25,7 @@ pub use fault::{ImportFault, ImportProblem};
 pub use header::has_header;
 pub use json::sheet_of;
 pub use measured::measured;
+pub(crate) use sheet::Content;
 pub use sheet::Sheet;
 pub use stack::{ImportOptions, Imported, import};
 pub use step::{StepImportFault, StepRequest, StepStudy, is_step, step_into, step_study};

@@ -25,6 +25,11 @@ pub(crate) enum Content {
 }
 
 impl Content {
+    /// Text of a cell, and that of a number. Returns None for other cells.
+    pub(crate) fn text(&self) -> Option<String> {
+        self.words()
+    }
+
     /// Text or plain number, for a column of words. Returns None for other cells.
     pub(super) fn words(&self) -> Option<String> {
         match self {

@@ -1,0 +1,148 @@
+//! Rewrites a study with other means and sigmas of its dimensions. Everything else stays as it was written, comments included.
+
+use std::ops::Range;
+
+use crate::Study;
+use crate::folder::Format;
+use crate::rewrite::RewriteError;
+use crate::tree::{Key, Tree, Value};
+use crate::write;
+use sensitol_numeric::correlation::Pair;
+
+/// Keys that mean and sigma replace.
+const REPLACED: [&str; 8] = ["process", "cp", "cpk", "sigma", "sigmas", "drift", "shift", "distribution"];
+/// Relative tolerance of figures that are read again: they are written with six digits.
+const SAME: f64 = 1e-4;
+/// Significant digits of a written sigma.
+const DIGITS: i32 = 6;
+
+/// Mean and sigma that a dimension is to have.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UpdatedSpread {
+    /// Name of the dimension.
+    pub dimension: String,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub sigma: f64,
+}
+
+/// A study with other means and sigmas.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct UpdatedStudy {
+    /// Text of the whole study.
+    pub text: String,
+    /// Dimensions whose distribution was replaced by a normal one, since its sigma follows from its band.
+    pub made_normal: Vec<String>,
+}
+
+impl Study {
+    /// Rewrites the study with these means and sigmas: `sigma` and `shift` take the place of capabilities, and tolerances stay. A
+    /// distribution other than a normal one becomes normal. New correlations are added at the end.
+    ///
+    /// # Errors
+    /// Fails if a dimension has no entry of its own or is measured, if correlations are to be added to a study in JSON, or if the new text
+    /// does not give the wanted figures.
+    ///
+    /// ```
+    /// use sensitol_study::{Study, UpdatedSpread};
+    /// let text = "[dimensions]\na = { nominal = 10, tolerance = 0.3, cp = 1.2 } # turned\n[characteristics]\ny = { formula = \"2*a\" }\n";
+    /// let study = Study::from_toml(text, "study.toml")?;
+    /// let wanted = UpdatedSpread { dimension: "a".into(), mean: 10.05, sigma: 0.08 };
+    /// let updated = study.updated(&[wanted], &[]).unwrap();
+    /// assert_eq!(updated.text, text.replace("cp = 1.2", "sigma = 0.08, shift = 0.05"));
+    /// # Ok::<(), sensitol_study::StudyError>(())
+    /// ```
+    pub fn updated(&self, spreads: &[UpdatedSpread], correlations: &[Pair]) -> Result<UpdatedStudy, RewriteError> {
+        let tree = self.tree();
+        let lines = tree.as_ref().and_then(|tree| tree.entry("dimensions"));
+        let (mut edits, mut made_normal): (Vec<(Range<usize>, String)>, Vec<String>) = (Vec::new(), Vec::new());
+        for wanted in spreads {
+            let by_hand = |why| RewriteError::ByHand { dimension: wanted.dimension.clone(), why };
+            let dimension = self.problem.dimensions().iter().find(|one| one.name() == wanted.dimension);
+            let (Some(dimension), Some(line)) = (dimension, lines.and_then(|lines| lines.entry(&wanted.dimension)))
+            else {
+                return Err(by_hand("it has no entry of its own"));
+            };
+            let Value::Table(keys) = &line.value else { return Err(by_hand("it is no table")) };
+            let given = |name: &str| keys.iter().any(|(key, _)| key.name == name);
+            if given("measured") || given("moments") {
+                return Err(by_hand("its distribution is given by values or moments"));
+            }
+            if dimension.distribution().is_some_and(|law| law.name() != "normal") {
+                made_normal.push(wanted.dimension.clone());
+            }
+            let [lower, upper] = dimension.tolerance().unwrap_or([0.0; 2]);
+            let off = wanted.mean - dimension.nominal() - 0.5 * (lower + upper);
+            let pairs = [("sigma", written(wanted.sigma, wanted.sigma)), ("shift", written(off, wanted.sigma))];
+            self.replace(keys, line, &pairs, &mut edits);
+        }
+        edits.sort_by_key(|(place, _)| (place.start, place.end));
+        let (mut text, mut at) = (String::with_capacity(self.text.len()), 0);
+        for (place, new) in &edits {
+            text += &self.text[at..place.start];
+            text += new;
+            at = place.end;
+        }
+        text += &self.text[at..];
+        for pair in correlations {
+            if self.format == Format::Json {
+                let why = "its correlation is new, and none is added to a study in JSON";
+                return Err(RewriteError::ByHand { dimension: pair.between[0].clone(), why });
+            }
+            let between = write::array(pair.between.iter().map(|name| write::quoted(name)));
+            let break_ = if text.ends_with('\n') { "" } else { "\n" };
+            text += &format!("{break_}\n[[correlation]]\nbetween = {between}\nvalue = {:.4}\n", pair.value);
+        }
+        let read = self.read_again(&text)?;
+        for wanted in spreads {
+            let found = read.problem.dimensions().iter().find(|one| one.name() == wanted.dimension);
+            let same = found.is_some_and(|found| {
+                (found.mean() - wanted.mean).abs() <= SAME * wanted.sigma
+                    && (found.sigma() - wanted.sigma).abs() <= SAME * wanted.sigma
+            });
+            if !same {
+                return Err(RewriteError::NotTheSame { dimension: wanted.dimension.clone() });
+            }
+        }
+        Ok(UpdatedStudy { text, made_normal })
+    }
+
+    /// Puts the pairs in the place of the keys that they replace.
+    fn replace(
+        &self,
+        keys: &[(Key, Tree)],
+        line: &Tree,
+        pairs: &[(&str, String)],
+        edits: &mut Vec<(Range<usize>, String)>,
+    ) {
+        let inline = self.text[line.span.clone()].starts_with('{');
+        let between = if inline { ", " } else { "\n" };
+        let new: Vec<String> = pairs.iter().map(|(key, value)| write::pair(self.format, key, value)).collect();
+        let new = new.join(between);
+        let mut placed = false;
+        for (at, (key, value)) in keys.iter().enumerate().filter(|(_, (key, _))| REPLACED.contains(&key.name.as_str()))
+        {
+            match placed {
+                false => edits.push((key.span.start..value.span.end, new.clone())),
+                true => edits.push((keys[at - 1].1.span.end..value.span.end, String::new())),
+            }
+            placed = true;
+        }
+        if let (false, Some((_, last))) = (placed, keys.last()) {
+            edits.push((last.span.end..last.span.end, format!("{between}{new}")));
+        }
+    }
+}
+
+/// Text of a number with six digits relative to a scale.
+fn written(value: f64, scale: f64) -> String {
+    let decimals = DIGITS - 1 - libm::log10(scale).floor() as i32;
+    if !(0..=20).contains(&decimals) {
+        return write::number(value);
+    }
+    let text = format!("{value:.*}", decimals as usize);
+    let text = text.trim_end_matches('0');
+    if text.ends_with('.') || text == "-0." { format!("{text}0") } else { text.to_owned() }
+}

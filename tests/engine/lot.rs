@@ -1,0 +1,146 @@
+//! Lots against studies: what is shifted is found and named, what is right is left alone, and what no part explains is said.
+
+use rand::SeedableRng;
+use rand_distr::{Distribution, Normal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use sensitol::assembly::Run;
+use sensitol::lot::{LotColumn, LotComparison, LotError, LotOptions, LotTable, LotVerdict, compare_lot};
+use sensitol::{Characteristic, Closure, Dimension, Method, Problem, SpecLimits};
+use sensitol_testing::close;
+
+const NAMES: [&str; 3] = ["a", "b", "c"];
+/// Assumed means and sigmas of the study.
+const ASSUMED: [(f64, f64); 3] = [(10.0, 0.02), (4.0, 0.01), (5.0, 0.015)];
+
+fn problem() -> Problem {
+    let dimensions =
+        NAMES.iter().zip(ASSUMED).map(|(name, (mean, sigma))| Dimension::normal(*name, mean, 3.0 * sigma).unwrap());
+    let limits = SpecLimits::new(Some(0.9), Some(1.1)).unwrap();
+    Problem::new(dimensions.collect::<Vec<_>>(), Closure::scalar("gap", |x| x[0] - x[1] - x[2]))
+        .unwrap()
+        .asking([Characteristic::new("gap").with_limits(limits)])
+        .unwrap()
+}
+
+/// Parts and assemblies of a process with these means and sigmas. The model of the real assemblies has `missing` added.
+fn lot(rng: &mut Xoshiro256PlusPlus, process: [(f64, f64); 3], counts: [usize; 2], missing: f64) -> [LotTable; 2] {
+    let mut draw = |count: usize| -> Vec<Vec<f64>> {
+        let column = |(mean, sigma): (f64, f64), rng: &mut Xoshiro256PlusPlus| {
+            let law = Normal::new(mean, sigma).unwrap();
+            (0..count).map(|_| law.sample(rng)).collect()
+        };
+        process.into_iter().map(|of| column(of, rng)).collect()
+    };
+    let (parts, others) = (draw(counts[0]), draw(counts[1]));
+    let column = |name: &str, values: Vec<f64>| LotColumn {
+        name: name.to_owned(),
+        values: values.into_iter().map(Some).collect(),
+    };
+    let gaps = (0..counts[1]).map(|row| others[0][row] - others[1][row] - others[2][row] + missing).collect();
+    let of_parts = NAMES.into_iter().zip(parts).map(|(name, values)| column(name, values)).collect();
+    [
+        LotTable { columns: of_parts, ..LotTable::default() },
+        LotTable { columns: vec![column("gap", gaps)], ..LotTable::default() },
+    ]
+}
+
+fn compared(tables: &[LotTable]) -> LotComparison {
+    let options = LotOptions::default();
+    compare_lot(&problem(), tables, &options, &Method::SecondOrder.into(), &Run::to_the_end()).unwrap()
+}
+
+/// 300 right lots: 5 % of them may be refuted, with a standard error of 1.3 %.
+#[test]
+fn right_studies_are_left_alone() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
+    let mut refuted = 0;
+    for _ in 0..300 {
+        let found = compared(&lot(&mut rng, ASSUMED, [60, 40], 0.0));
+        let departs = found.dimensions.iter().any(|one| one.departs(found.family_wise_level));
+        refuted += usize::from(departs || found.characteristics[0].verdict != LotVerdict::AsAssumed);
+    }
+    assert!(refuted <= 27, "{refuted}");
+}
+
+/// `a` is 1.5 sigma too large. The difference of the linear prediction is the measured shift itself, and nothing remains.
+#[test]
+fn a_shifted_dimension_is_named() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(2);
+    let mut shifted = ASSUMED;
+    shifted[0].0 += 0.03;
+    let (mut named, mut held) = (0, 0);
+    for _ in 0..200 {
+        let found = compared(&lot(&mut rng, shifted, [60, 40], 0.0));
+        let gap = &found.characteristics[0];
+        let first = &gap.differences[0];
+        close(first.mean.unwrap(), found.dimensions[0].mean.value - 10.0, 1e-9, 1e-9);
+        close(gap.mean_remainder.unwrap(), 0.0, 1e-9, 1.0);
+        close(gap.variance_remainder.unwrap(), 0.0, 1e-12, 1.0);
+        named += usize::from(gap.verdict == LotVerdict::ByParts { dimension: Some("a".to_owned()) });
+        // The true yield: mean 1.03, sigma 0.02693, so that 0.535 % lie above 1.1 by the normal distribution.
+        let interval = gap.by_parts.unwrap().yield_interval.unwrap();
+        held += usize::from(interval[0] <= 0.995_33 && 0.995_33 <= interval[1]);
+    }
+    assert!(named >= 190, "{named}");
+    // 200 lots have a standard error of 1.5 %.
+    assert!((180..=200).contains(&held), "{held}");
+}
+
+#[test]
+fn a_missing_dimension_is_no_fault_of_the_parts() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
+    let found = compared(&lot(&mut rng, ASSUMED, [60, 40], 0.04));
+    assert_eq!(found.characteristics[0].verdict, LotVerdict::Unexplained { mean: true, sigma: false });
+    assert!(found.dimensions.iter().all(|one| !one.departs(found.family_wise_level)));
+    // Without parts nothing but the study stands beside the assemblies.
+    let [_, assemblies] = lot(&mut rng, ASSUMED, [60, 40], 0.04);
+    let found = compared(&[assemblies]);
+    assert!(matches!(found.characteristics[0].verdict, LotVerdict::Unexplained { mean: true, .. }));
+    assert_eq!(found.not_measured, NAMES);
+}
+
+/// Parts that vary together widen the difference of two of them.
+#[test]
+fn a_correlation_of_the_rows_enters_the_prediction() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(4);
+    let [mut parts, _] = lot(&mut rng, ASSUMED, [200, 5], 0.0);
+    // `b` follows `a`: correlation 1/sqrt(2).
+    let (a, b) = (parts.columns[0].values.clone(), parts.columns[1].values.clone());
+    parts.columns[1].values = a
+        .iter()
+        .zip(&b)
+        .map(|(a, b)| Some(4.0 + (0.5 * (a.unwrap() - 10.0) + b.unwrap() - 4.0) / 2f64.sqrt()))
+        .collect();
+    let found = compared(&[parts]);
+    let pair = &found.correlations[0];
+    assert!(pair.between == ["a", "b"] && pair.value.interval[0] < 0.707 && 0.707 < pair.value.interval[1]);
+    let [a, b, c] = [0, 1, 2].map(|place: usize| found.dimensions[place].sigma.value);
+    let expected = a * a + b * b + c * c - 2.0 * pair.value.value * a * b;
+    close(found.characteristics[0].by_parts.unwrap().sigma, expected.sqrt(), 1e-6, 1.0);
+}
+
+#[test]
+fn wrong_lots_are_refused() {
+    let column = |name: &str, values: &[f64]| LotColumn {
+        name: name.to_owned(),
+        values: values.iter().copied().map(Some).collect(),
+    };
+    let refused = |columns: Vec<LotColumn>| {
+        let table = LotTable { columns, ..LotTable::default() };
+        compare_lot(&problem(), &[table], &LotOptions::default(), &Method::SecondOrder.into(), &Run::to_the_end())
+            .unwrap_err()
+    };
+    let some = [1.0, 2.0, 3.0, 4.0, 5.0];
+    assert_eq!(refused(Vec::new()), LotError::Nothing);
+    assert_eq!(
+        refused(vec![column("gapp", &some)]).to_string(),
+        "the study has no dimension or characteristic `gapp`; did you mean `gap`?"
+    );
+    assert!(matches!(refused(vec![column("a", &some), column("a", &some)]), LotError::MeasuredTwice { .. }));
+    assert!(matches!(refused(vec![column("a", &some[..4])]), LotError::TooFewParts { found: 4, .. }));
+    assert!(matches!(refused(vec![column("a", &[1.0; 5])]), LotError::AllEqual { .. }));
+    let options = LotOptions::default().with_assumed_parts(1.0);
+    let table = LotTable { columns: vec![column("a", &some)], ..LotTable::default() };
+    let found = compare_lot(&problem(), &[table], &options, &Method::SecondOrder.into(), &Run::to_the_end());
+    assert!(matches!(found, Err(LotError::Choice { .. })));
+}
