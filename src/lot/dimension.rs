@@ -98,8 +98,20 @@ pub struct GroupsInLot {
     pub within: LotFigure,
     /// Test against equal means.
     pub test: LotTest,
-    /// Name, number of parts and mean of each group.
-    pub groups: Vec<(String, usize, f64)>,
+    /// The groups, by name.
+    pub groups: Vec<GroupInLot>,
+}
+
+/// Parts of one group.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct GroupInLot {
+    /// Name of the group.
+    pub name: String,
+    /// Number of parts.
+    pub parts: usize,
+    /// Mean of the parts.
+    pub mean: f64,
 }
 
 /// Measured correlation of two dimensions.
@@ -150,7 +162,7 @@ impl DimensionInLot {
                 between: of.between,
                 within: of.within,
                 test: of.test,
-                groups: of.groups,
+                groups: of.groups.into_iter().map(|(name, parts, mean)| GroupInLot { name, parts, mean }).collect(),
             })
         });
         Ok(Self {

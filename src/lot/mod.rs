@@ -18,7 +18,7 @@ mod family;
 mod measured_problem;
 
 pub use characteristic::{CharacteristicInLot, DifferenceShare, LotVerdict, MeasuredAssemblies, PredictedFigures};
-pub use dimension::{CorrelationInLot, DimensionInLot, GroupsInLot};
+pub use dimension::{CorrelationInLot, DimensionInLot, GroupInLot, GroupsInLot};
 pub use error::LotError;
 
 use serde::Serialize;

@@ -20,6 +20,7 @@ mod init;
 mod json_errors;
 mod labels;
 mod likely_mistakes;
+mod lots;
 mod memory;
 mod outputs;
 mod own_files;

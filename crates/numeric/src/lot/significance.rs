@@ -18,7 +18,7 @@ pub struct LotFigure {
 pub struct LotTest {
     /// Probability of a figure at least this far off if the assumption holds.
     pub p: f64,
-    /// The same for the whole family of tests, by Holm's method: at most the family-wise level if the assumption is refuted.
+    /// Probability for the whole family of tests, by Holm's method: at most the family-wise level if the assumption is refuted.
     pub adjusted: f64,
 }
 
