@@ -3,6 +3,8 @@
 use crate::distribution_bounds::simplex::{Column, Solution};
 use crate::distribution_bounds::{ConditionalYield, DistributionPromise};
 
+/// Number of cells at the beginning: an isolated limit is found by bounds, not by chance.
+const BEGIN: usize = 64;
 /// Values of a uniform distribution at which its mean share is bounded.
 const SLICES: u32 = 256;
 
@@ -18,18 +20,18 @@ pub(super) struct Cells<'c> {
 }
 
 impl<'c> Cells<'c> {
-    /// Divides the range into equal cells.
+    /// Divides the range into equal cells, and at a mean that keeps the promise.
     pub(super) fn new(
         promise: &'c DistributionPromise,
         within: &'c dyn ConditionalYield,
         sign: f64,
-        count: usize,
+        mean: f64,
     ) -> Self {
         let [low, high] = promise.range();
-        let mut ends: Vec<f64> = (0..=count).map(|end| low + (high - low) * end as f64 / count as f64).collect();
-        // A distribution at the promised mean alone keeps every promise, so its place is an end.
+        let mut ends: Vec<f64> = (0..=BEGIN).map(|end| low + (high - low) * end as f64 / BEGIN as f64).collect();
+        // A distribution at this mean alone keeps every promise: the program begins with it.
         if !promise.is_symmetric() {
-            ends.extend(promise.means());
+            ends.push(mean);
         }
         ends.sort_unstable_by(f64::total_cmp);
         ends.dedup();
@@ -88,23 +90,26 @@ impl<'c> Cells<'c> {
         if self.sign > 0.0 { least } else { -greatest }
     }
 
-    /// Greatest excess of a dual function of this curvature over its greater value at the ends of a cell.
-    pub(super) fn bulge(&self, curvature: f64) -> f64 {
-        let widest = self.ends.windows(2).map(|ends| ends[1] - ends[0]).fold(0.0, f64::max);
-        // A parabola rises above the greater end by at most its curvature times a quarter of the squared width.
-        curvature.max(0.0) * 0.25 * widest * widest
+    /// Least distance of the value of each cell above the dual function, at all points of the cell.
+    pub(super) fn room(&self, columns: &[Column], solution: &Solution) -> Vec<f64> {
+        let of = |(ends, pair): (&[f64], &[Column])| {
+            let width = ends[1] - ends[0];
+            // A parabola rises above the greater of two of its values by at most its curvature times a quarter of their squared distance.
+            let bulge = solution.curvature().max(0.0) * 0.25 * width * width;
+            pair.iter().map(|column| solution.reduced_cost(column)).fold(f64::MAX, f64::min) - bulge
+        };
+        self.ends.windows(2).zip(columns.chunks(2)).map(of).collect()
     }
 
-    /// Splits the cells whose reduced cost is below `gap`. Returns false if none is.
-    pub(super) fn split(&mut self, columns: &[Column], solution: &Solution, gap: f64, parts: usize) -> bool {
+    /// Splits the cells with less room than `gap`. Returns false if there is none that can be split.
+    pub(super) fn split(&mut self, room: &[f64], gap: f64, parts: usize) -> bool {
         let mut ends = vec![self.ends[0]];
         let mut least = Vec::new();
         let mut any = false;
-        for (cell, pair) in columns.chunks(2).enumerate() {
+        for (cell, room) in room.iter().enumerate() {
             let [from, to] = [self.ends[cell], self.ends[cell + 1]];
-            let matters = pair.iter().any(|column| solution.reduced_cost(column) <= gap);
             let middle = f64::midpoint(from, to);
-            if matters && from < middle && middle < to {
+            if *room <= gap && from < middle && middle < to {
                 any = true;
                 for part in 1..=parts {
                     let end = if part == parts { to } else { from + (to - from) * part as f64 / parts as f64 };

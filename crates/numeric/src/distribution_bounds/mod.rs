@@ -28,8 +28,6 @@ use simplex::{Column, Programme};
 
 /// Difference of the certified end and the yield of a distribution that was found, at which cells are no longer split.
 pub const CLOSE: f64 = 1e-6;
-/// Number of cells at the beginning: an isolated limit is found by bounds, not by chance.
-const BEGIN: usize = 64;
 /// Most rounds. A round splits the cells that matter by [`SPLIT`].
 const ROUNDS: usize = 24;
 /// Parts of a cell that matters.
@@ -119,23 +117,27 @@ fn end(promise: &DistributionPromise, within: &dyn ConditionalYield, sign: f64) 
 
 /// End with the mean in a range.
 fn of_range(promise: &DistributionPromise, within: &dyn ConditionalYield, sign: f64, range: [f64; 2]) -> End {
-    let mut cells = Cells::new(promise, within, sign, BEGIN);
+    let mut cells = Cells::new(promise, within, sign, f64::midpoint(range[0], range[1]));
     let programme = Programme::of(promise, range);
     let mut found = End { certified: f64::MIN, attained: f64::MAX, points: Vec::new() };
     for _ in 0..ROUNDS {
         let columns: Vec<Column> = cells.columns();
         let solution = programme.solve(&columns);
-        // The dual function may exceed its values at the ends of a cell between them, by the curvature.
-        let excess = cells.bulge(solution.curvature());
-        found.certified = found.certified.max(solution.value - excess);
-        let points: Vec<[f64; 2]> =
-            solution.weights.iter().map(|(column, weight)| [columns[*column].x, *weight]).collect();
-        let attained: f64 = points.iter().map(|[x, weight]| weight * cells.value(*x)).sum();
+        let room = cells.room(&columns, &solution);
+        // Where the dual function is above a value, it is lowered as a whole.
+        let short = room.iter().copied().fold(0.0, f64::min);
+        found.certified = found.certified.max(solution.value + short);
+        // Values at the ends of cells, in place of bounds over cells, give a distribution that can occur.
+        let real: Vec<Column> =
+            columns.iter().map(|column| Column { value: cells.value(column.x), ..*column }).collect();
+        let reached = programme.solve(&real);
+        let points: Vec<[f64; 2]> = reached.weights.iter().map(|(column, weight)| [real[*column].x, *weight]).collect();
+        let attained: f64 = reached.weights.iter().map(|(column, weight)| weight * real[*column].value).sum();
         if attained < found.attained {
             (found.attained, found.points) = (attained, points);
         }
         let gap = found.attained - found.certified;
-        if gap < CLOSE || cells.count() > MOST || !cells.split(&columns, &solution, gap, SPLIT) {
+        if gap < CLOSE || cells.count() > MOST || !cells.split(&room, gap, SPLIT) {
             break;
         }
     }
