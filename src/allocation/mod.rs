@@ -33,6 +33,7 @@ pub use crate::allocation::cost::cost_curve::CurveKind;
 pub use crate::allocation::cost::cost_curve::{Curve, Offer, Priced};
 pub use crate::allocation::cost::cost_error::CostError;
 pub use crate::allocation::cost::default_costs::CostBasis;
+pub use crate::allocation::cost::priced_zone::{PricedZone, ZonePart};
 pub use crate::allocation::cost::process_option::Made;
 pub use crate::allocation::requirement::quality_loss::QualityLoss;
 pub use crate::allocation::result::allocation::ProofShape;
@@ -40,8 +41,8 @@ pub use crate::allocation::surface::joint_yield::JointYield;
 
 pub use crate::allocation::cost::setup_cost::SetUp;
 pub use crate::allocation::result::allocation::{
-    Allocated, Allocation, AllocationSolver, Attainable, Bound, FrontPoint, JointKept, Kept, Moved, Proof, ShadowPrice,
-    Status,
+    Allocated, AllocatedZone, Allocation, AllocationSolver, Attainable, Bound, FrontPoint, JointKept, Kept, Moved,
+    Proof, ShadowPrice, Status,
 };
 pub use crate::allocation::result::json::FrontRequirement;
 pub use crate::allocation::search::run::allocate_written;

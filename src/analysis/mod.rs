@@ -373,7 +373,7 @@ fn spent(outcome: &Outcome, options: &Options, spent: RunSummary) -> RunSummary 
 }
 
 /// Runs the method of the options. `auto` continues until the errors of results other than sigma also meet their accuracies.
-fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
+pub(crate) fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
     let narrow = if options.accuracies.any() { None } else { ReducedInputs::of(problem, options) };
     if let Some(narrow) = narrow {
         let spent = match narrow.run(problem, options, run)? {

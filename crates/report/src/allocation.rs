@@ -258,20 +258,35 @@ impl Names<'_> {
     }
 
     fn allocated(&self, allocation: &Allocation, one: &Allocated) -> AllocatedReport {
-        let d = one.dimension;
+        let (d, members) = match &one.zone {
+            None => (one.dimension, vec![one.dimension]),
+            Some(zone) => (one.dimension, zone.members.clone()),
+        };
         let changed = allocation.cost_after.is_some();
-        let share = |analysis: &Analysis, c: usize| analysis.characteristics[c].share(d);
+        let share = |analysis: &Analysis, c: usize| -> Option<f64> {
+            members.iter().map(|&d| analysis.characteristics[c].share(d)).sum()
+        };
         let shares = |c: usize| BeforeAfter {
             before: share(&allocation.before, c),
             after: allocation.after.as_ref().and_then(|after| share(after, c)),
         };
         let one = Allocated { bound: one.bound.filter(|_| changed), ..one.clone() };
+        let (of, deviations) = match &one.zone {
+            None => (
+                self.dimension(d, &one),
+                BeforeAfter {
+                    before: self.0.dimensions()[d].tolerance(),
+                    after: allocation.problem.dimensions()[d].tolerance(),
+                },
+            ),
+            Some(zone) => (
+                OfDimension { dimension: zone.name.clone(), unit: zone.unit.clone(), of: one.clone() },
+                BeforeAfter { before: Some([-one.before, one.before]), after: Some([-one.after, one.after]) },
+            ),
+        };
         AllocatedReport {
-            of: self.dimension(d, &one),
-            deviations: BeforeAfter {
-                before: self.0.dimensions()[d].tolerance(),
-                after: allocation.problem.dimensions()[d].tolerance(),
-            },
+            of,
+            deviations,
             contributions: (0..self.0.characteristics().len()).map(|c| self.of(c, &shares(c))).collect(),
         }
     }

@@ -81,7 +81,9 @@ impl AllocationReport {
             document.sections.push(section);
         }
         if let Some(entries) = &self.dimensions_table {
-            let text = format!("[dimensions]\n{}", entries.trim_end_matches('\n'));
+            // Entries of features come with the heading of their part.
+            let heading = if entries.starts_with('[') { "" } else { "[dimensions]\n" };
+            let text = format!("{heading}{}", entries.trim_end_matches('\n'));
             let mut section = Section::default();
             section.blocks.push(Element::Paragraph(Paragraph { line: text.into(), indent: 0, flow: Flow::Verbatim }));
             document.sections.push(section);

@@ -223,7 +223,7 @@ fn an_allocation_is_all_in_its_report() {
     });
     let one = json.pointer("/tolerances/0").unwrap();
     complete!(one, &found.tolerances[0] => Allocated {
-        dimension: "/dimension", before: "/before", after: "/after", cost_before: "/cost_before", cost_after: "/cost_after",
+        dimension: "/dimension", zone: "/dimension", before: "/before", after: "/after", cost_before: "/cost_before", cost_after: "/cost_after",
         process: "/process", bound: "/at_bound", bound_price: "/bound_price",
     });
     let one = json.pointer("/requirements/0").unwrap();

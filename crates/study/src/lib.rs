@@ -169,6 +169,8 @@ pub struct Study {
     pub poses: Vec<PartPose>,
     /// Unit of lengths of an assembly in space: the first one that the study names. None if it names none.
     pub length_unit: Option<String>,
+    /// Zones with a cost.
+    zones: Vec<expand::ZonePlace>,
     /// Facts about an assembly in space; None if the study has none.
     spatial: Option<scene::SpatialFacts>,
     /// Text that the study was read from.
@@ -338,6 +340,7 @@ impl Study {
             length_unit: expanded.spatial.as_ref().and_then(|facts| facts.length_unit.clone()),
             poses: expanded.spatial.as_ref().map_or_else(Vec::new, |facts| facts.poses.clone()),
             spatial: expanded.spatial,
+            zones: expanded.zones,
             configurations: expanded.configurations,
             costs: built.costs,
             losses: built.losses,

@@ -6,11 +6,12 @@ use std::ops::Range;
 
 use crate::Study;
 use crate::error::StudyError;
+use crate::expand::ZonePlace;
 use crate::external_settings::Externals;
 use crate::folder::Format;
 use crate::tree::{Key, Tree, Value};
 use crate::write;
-use sensitol::allocation::Offer;
+use sensitol::allocation::{Offer, ZonePart};
 use sensitol::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
 
@@ -94,9 +95,23 @@ impl Study {
         let lines = tree.as_ref().and_then(|tree| tree.entry("dimensions"));
         let mut edits: Vec<(Range<usize>, String)> = Vec::new();
         let (mut changed, mut replaced_fits) = (Vec::new(), Vec::new());
+        let (mut changed_zones, mut zone_lines): (Vec<&str>, Vec<Vec<String>>) = (Vec::new(), Vec::new());
         for (d, (old, new)) in self.problem.dimensions().iter().zip(wanted.dimensions()).enumerate() {
             let process = if alike(old, new) { None } else { self.process_of(d, new) };
             if process.is_none() && old.half_band() == new.half_band() && old.nominal() == new.nominal() {
+                continue;
+            }
+            if let Some((place, part, half)) = self.zone_of(d, new) {
+                if !changed_zones.contains(&part) {
+                    let at = tree.as_ref().and_then(|tree| self.width_of(tree, place));
+                    let Some((span, line)) = at else {
+                        let why = "its zone has no width that is a number";
+                        return Err(RewriteError::ByHand { dimension: part.to_owned(), why });
+                    };
+                    edits.push((span, cut(2.0 * half)));
+                    changed_zones.push(part);
+                    zone_lines.push(line);
+                }
                 continue;
             }
             let name = old.zone().unwrap_or(old.name());
@@ -133,12 +148,74 @@ impl Study {
                 && found.half_band() >= new.half_band() * (1.0 - SAME);
             let place = (found.mean() - new.mean()).abs().max((found.nominal() - new.nominal()).abs());
             let sigma = (found.sigma() - new.sigma()).abs() <= SAME * new.sigma();
-            if !(band && sigma && place <= SAME_PLACE * new.sigma()) {
+            // The width of a zone is a nominal value, cut to six digits.
+            let width = new.sigma() == 0.0 && place <= SAME * new.nominal().abs();
+            if !(band && sigma && (width || place <= SAME_PLACE * new.sigma())) {
                 return Err(RewriteError::NotTheSame { dimension: new.name().to_owned() });
             }
         }
-        let entries = read.entries(&changed);
+        let entries = read.entries(&changed) + &read.feature_entries(&zone_lines);
         Ok((Rewritten { text, entries, replaced_fits }, read))
+    }
+
+    /// Zone of a dimension with a cost: its place, its name and its new half width. Returns None for other dimensions.
+    fn zone_of(&self, d: usize, new: &Dimension) -> Option<(&ZonePlace, &str, f64)> {
+        for group in &self.costs {
+            let Some(zone) = &group.zone else { continue };
+            let member = group.members.iter().position(|&member| member == d);
+            let part = match member {
+                Some(place) => zone.parts.iter().find(|part| part.members.contains(&place)),
+                // A width has the name of its zone.
+                None if zone.widths.iter().any(|&(width, _)| width == d) => {
+                    let is_own =
+                        |part: &&ZonePart| self.zones.iter().any(|of| of.cost == part.name && of.name() == new.name());
+                    zone.parts.iter().find(is_own)
+                }
+                None => None,
+            };
+            let Some(part) = part else { continue };
+            let place = self.zones.iter().find(|place| place.cost == part.name)?;
+            let half = match member {
+                Some(place) => new.half_band() / group.share(place),
+                None => 0.5 * new.nominal(),
+            };
+            return Some((place, &part.name, half));
+        }
+        None
+    }
+
+    /// Place of the width of a zone in the text, and the keys that lead to the entry of its feature.
+    fn width_of(&self, tree: &Tree, place: &ZonePlace) -> Option<(Range<usize>, Vec<String>)> {
+        let mut found = tree.entry("parts")?;
+        for key in &place.path {
+            found = found.entry(key)?;
+        }
+        let width = found.entry("zone").unwrap_or(found);
+        let line = place.path[..place.path.len() - 1].to_vec();
+        matches!(width.value, Value::Number(_) | Value::Integer(_)).then(|| (width.span.clone(), line))
+    }
+
+    /// Text of the entries of features, below the table of their part.
+    fn feature_entries(&self, lines: &[Vec<String>]) -> String {
+        let Some(tree) = self.tree() else { return String::new() };
+        let mut text = String::new();
+        let mut last: Option<&[String]> = None;
+        for line in lines {
+            let Some((name, above)) = line.split_last() else { continue };
+            let mut found = tree.entry("parts");
+            for key in line {
+                found = found.and_then(|found| found.entry(key));
+            }
+            let Some(entry) = found else { continue };
+            if last != Some(above) {
+                text += &format!("[parts.{}]\n", above.join("."));
+                last = Some(above);
+            }
+            let own = &self.text[entry.span.clone()];
+            let written = if own.starts_with('{') { own.to_owned() } else { inline(&self.text, entry) };
+            text += &write::entry(self.format, name, 0, &written);
+        }
+        text
     }
 
     /// Name of the dimension with the cost, and of the process that gives the new distribution. Returns None if no process does.

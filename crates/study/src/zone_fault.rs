@@ -62,6 +62,83 @@ pub enum ZoneFault {
         /// Width of the zone of the place.
         wide: f64,
     },
+    /// A cost of a feature that has no zone.
+    #[error("`{feature}` has a cost and no zone")]
+    CostWithoutZone {
+        /// The feature.
+        feature: String,
+    },
+    /// A cost of a feature with several zones.
+    #[error("`{feature}` has a cost and several zones: {}", quoted(zones))]
+    CostOfSeveral {
+        /// The feature.
+        feature: String,
+        /// Keys of the zones.
+        zones: Vec<&'static str>,
+    },
+    /// A cost of a zone that the feature does not have.
+    #[error("`{feature}` has no `{zone}`, and its cost has")]
+    CostOfMissing {
+        /// The feature.
+        feature: String,
+        /// Key of the zone.
+        zone: String,
+        /// Keys of the zones that there are.
+        zones: Vec<&'static str>,
+    },
+    /// A zone with two lines of costs.
+    #[error("`{zone}` has two costs, and `{other}` is the first")]
+    TwoCosts {
+        /// The zone.
+        zone: String,
+        /// Line of the first cost.
+        other: String,
+    },
+    /// A cost of a zone that moves nothing.
+    #[error("`{zone}` has a cost and moves nothing")]
+    CostOfIdle {
+        /// The zone.
+        zone: String,
+    },
+    /// A cost of a zone whose width is a formula.
+    #[error("`{zone}` has a cost, and its width is a formula")]
+    CostOfFormula {
+        /// The zone.
+        zone: String,
+    },
+    /// A cost of a zone of width 0.
+    #[error("`{zone}` has a cost and the width 0")]
+    CostOfNothing {
+        /// The zone.
+        zone: String,
+    },
+    /// A cost of a zone that is not about the nominal place.
+    #[error("`{zone}` has a cost, and its places are not about the nominal one")]
+    CostOfUneven {
+        /// The zone.
+        zone: String,
+    },
+    /// Bounds of a cost with which an orientation could be wider than the location that it refines.
+    #[error("with {key} = {given} `{zone}` could leave `{inner}` wider than `{outer}`, half of which is {bound}")]
+    CostBeyondRefinement {
+        /// The zone with the cost.
+        zone: String,
+        /// Key of the bound.
+        key: &'static str,
+        /// Bound as written.
+        given: f64,
+        /// Key of the orientation.
+        inner: &'static str,
+        /// Key of the location.
+        outer: &'static str,
+        /// Half of the zone without a cost.
+        bound: f64,
+    },
+}
+
+/// Names in backquotes.
+fn quoted(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 impl ZoneFault {
@@ -75,6 +152,22 @@ impl ZoneFault {
             Self::AxisMissing { .. } => "name the axis of the part: datums = \"journal\"".into(),
             Self::VaryingDirection { .. } => "write its directions as words or numbers".into(),
             Self::NoRefinement { .. } => "leave it out, or write a tighter zone".into(),
+            Self::CostWithoutZone { feature } => {
+                format!("give `{feature}` a zone such as position = 0.1, or the cost to a dimension")
+            }
+            Self::CostOfSeveral { feature, zones } => format!("name one of them: \"{feature}.{}\"", zones[0]),
+            Self::CostOfMissing { feature, zones, .. } => match zones[..] {
+                [] => format!("give `{feature}` the zone, or leave the cost out"),
+                _ => format!("it has {}: write \"{feature}.{}\"", quoted(zones), zones[0]),
+            },
+            Self::TwoCosts { .. } => "keep one of them".into(),
+            Self::CostOfIdle { .. } => "leave the cost out, or name a joint that touches the feature".into(),
+            Self::CostOfFormula { .. } => "give the cost to the dimension, or write the width as a number".into(),
+            Self::CostOfNothing { .. } => "write the present width, from which to start".into(),
+            Self::CostOfUneven { .. } => "leave the cost out, or write an even zone without `outward` or `side`".into(),
+            Self::CostBeyondRefinement { key, bound, .. } => {
+                format!("write {key} = {bound}, or give the other zone a cost too")
+            }
         }
     }
 }

@@ -38,7 +38,7 @@ impl<'s, 'a> Judge<'s, 'a> {
     fn of(setting: &'s Setting<'a>) -> Option<Self> {
         let dimensions = &setting.responses.dimensions;
         let option = |group: &Priced, offer: &Offer| -> Option<Vec<Dimension>> {
-            group.offered(offer, dimensions, |_| offer.min).map(|(_, made)| made?.ok()).collect()
+            group.offered(offer, dimensions, |_, share| share * offer.min).map(|(_, made)| made?.ok()).collect()
         };
         let of = |group: &Priced| group.offers.iter().map(|offer| option(group, offer)).collect();
         let options = setting.priced.iter().map(of).collect::<Option<_>>()?;

@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use crate::allocation::cost::cost_error::CostError;
 use crate::allocation::cost::custom_curve::WrittenCost;
+use crate::allocation::cost::priced_zone::PricedZone;
 use crate::allocation::cost::process_option::Made;
 use crate::assembly::formula::{Formula, FormulaError};
 use crate::problem::Problem;
+use sensitol_numeric::dimension::Dimension;
 
 /// Cost curve of one part over its half band `T`, falling as the tolerance opens.
 ///
@@ -139,6 +141,11 @@ impl Curve {
     /// ```
     pub fn table(points: &[[f64; 2]]) -> Result<Self, CostError> {
         Ok(Self::written(WrittenCost::table(points)?))
+    }
+
+    /// Sum of costs at one tolerance, each with its number of parts.
+    pub(in crate::allocation) fn sum(terms: Vec<(f64, Self)>) -> Self {
+        Self::written(WrittenCost::sum(terms))
     }
 
     fn written(written: WrittenCost) -> Self {
@@ -299,12 +306,14 @@ pub struct Priced {
     pub offers: Vec<Offer>,
     /// Free tolerance whose steps or standard grades are the offers.
     pub rounded: Option<Offer>,
+    /// Zone of a feature whose half width is the tolerance, if the members are its parts.
+    pub zone: Option<PricedZone>,
 }
 
 impl Priced {
     /// Group of one dimension without a cost.
     pub(crate) fn without_cost(dimension: usize) -> Self {
-        Self { members: vec![dimension], parts: 1.0, offers: Vec::new(), rounded: None }
+        Self { members: vec![dimension], parts: 1.0, offers: Vec::new(), rounded: None, zone: None }
     }
 
     /// Creates a group of dimensions with one cost curve. Each part is paid for.
@@ -328,7 +337,7 @@ impl Priced {
         if let Some(pair) = points.windows(2).find(|pair| pair[0].0 < pair[1].0 && pair[1].1 > pair[0].1) {
             return Err(CostError::Rising { loose: pair[1].0, tight: pair[0].0 });
         }
-        Ok(Self { parts: members.len() as f64, members, offers, rounded: None })
+        Ok(Self { parts: members.len() as f64, members, offers, rounded: None, zone: None })
     }
 
     /// Sets the free tolerance whose steps or standard grades are the offers.
@@ -355,9 +364,30 @@ impl Priced {
         costs.reduce(|best, other| if other.0 < best.0 { other } else { best })
     }
 
+    /// Sets the zone whose half width is the tolerance.
+    #[must_use]
+    pub fn of_zone(self, zone: PricedZone) -> Self {
+        Self { zone: Some(zone), ..self }
+    }
+
+    /// Half band of the member at this place per unit of the tolerance. It is 1 unless the group is a zone.
+    pub fn share(&self, place: usize) -> f64 {
+        self.zone.as_ref().and_then(|zone| zone.shares.get(place)).copied().unwrap_or(1.0)
+    }
+
+    /// Members with their shares.
+    pub(in crate::allocation) fn shared(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.members.iter().enumerate().map(|(place, &d)| (d, self.share(place)))
+    }
+
+    /// Present tolerance of the group: the half band of its first member by its share.
+    pub(in crate::allocation) fn present(&self, dimensions: &[Dimension]) -> f64 {
+        dimensions[self.members[0]].half_band() / self.share(0)
+    }
+
     /// Tightest half band of the members in a problem, which their common process has to hold.
     pub fn tightest_member(&self, problem: &Problem) -> f64 {
-        self.members.iter().map(|&d| problem.dimensions()[d].half_band()).fold(f64::INFINITY, f64::min)
+        self.shared().map(|(d, share)| problem.dimensions()[d].half_band() / share).fold(f64::INFINITY, f64::min)
     }
 
     /// Least half band of all offers.

@@ -6,6 +6,7 @@
 //!           piece beside it, so that slopes are continuous
 //! ```
 
+use crate::allocation::cost::cost_curve::Curve;
 use crate::allocation::cost::cost_error::CostError;
 use crate::assembly::formula::{Formula, FormulaError, FormulaSet, Jet, Meaning};
 
@@ -32,6 +33,8 @@ enum Form {
     },
     /// Points `(1/T, cost)`, ascending.
     Table(Vec<[f64; 2]>),
+    /// Sum of costs, each with its number of parts.
+    Sum(Vec<(f64, Curve)>),
 }
 
 impl PartialEq for WrittenCost {
@@ -39,6 +42,7 @@ impl PartialEq for WrittenCost {
         match (&self.0, &other.0) {
             (Form::Formula { text, .. }, Form::Formula { text: other, .. }) => text == other,
             (Form::Table(points), Form::Table(other)) => points == other,
+            (Form::Sum(terms), Form::Sum(other)) => terms == other,
             _ => false,
         }
     }
@@ -77,10 +81,20 @@ impl WrittenCost {
         Ok(Self(Form::Table(points.into_iter().map(|[t, cost]| [t.recip(), cost]).collect())))
     }
 
+    /// Sum of costs, each with its number of parts.
+    pub(in crate::allocation) fn sum(terms: Vec<(f64, Curve)>) -> Self {
+        Self(Form::Sum(terms))
+    }
+
     /// Least and greatest half band of a table. Returns None for a formula.
     pub(in crate::allocation) fn range(&self) -> Option<[f64; 2]> {
-        let Form::Table(points) = &self.0 else { return None };
-        Some([points[points.len() - 1][0].recip(), points[0][0].recip()])
+        match &self.0 {
+            Form::Formula { .. } => None,
+            Form::Table(points) => Some([points[points.len() - 1][0].recip(), points[0][0].recip()]),
+            Form::Sum(terms) => {
+                (terms.iter().filter_map(|(_, curve)| curve.range())).reduce(|a, b| [a[0].max(b[0]), a[1].min(b[1])])
+            }
+        }
     }
 
     /// Checks that the cost is valid between two half bands: it has values, none of them negative, and falls.
@@ -119,6 +133,7 @@ impl WrittenCost {
                 let slopes: Vec<f64> = points.windows(2).map(slope).collect();
                 slopes.windows(2).all(|pair| pair[1] >= pair[0] * (1.0 - ROUNDING))
             }
+            Form::Sum(terms) => terms.iter().all(|(_, curve)| curve.is_convex(min, max)),
             Form::Formula { .. } => looked(min, max).all(|t| {
                 let [first, second] = self.log_derivatives(t);
                 // The difference is T^2 C''.
@@ -131,7 +146,7 @@ impl WrittenCost {
     pub(in crate::allocation) fn points(&self, min: f64, max: f64) -> Vec<[f64; 2]> {
         match &self.0 {
             Form::Table(points) => points.iter().rev().map(|&[u, cost]| [u.recip(), cost]).collect(),
-            Form::Formula { .. } => looked(min, max).map(|t| [t, self.cost(t)]).collect(),
+            Form::Formula { .. } | Form::Sum(_) => looked(min, max).map(|t| [t, self.cost(t)]).collect(),
         }
     }
 
@@ -139,6 +154,7 @@ impl WrittenCost {
         match &self.0 {
             Form::Formula { set, .. } => set.jets(&[0], |_| Jet::variable(t, [0.0; 2]))[0].value(),
             Form::Table(points) => interpolated(points, t.recip())[0],
+            Form::Sum(terms) => terms.iter().map(|(parts, curve)| parts * curve.cost(t)).sum(),
         }
     }
 
@@ -161,6 +177,14 @@ impl WrittenCost {
                 let u = t.recip();
                 let [_, first, second] = interpolated(points, u);
                 [-u * first, u * first + u * u * second]
+            }
+            Form::Sum(terms) => {
+                let mut sum = [0.0; 2];
+                for (parts, curve) in terms {
+                    let own = curve.log_derivatives(t, libm::log(t));
+                    sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += parts * own);
+                }
+                sum
             }
         }
     }

@@ -80,7 +80,7 @@ pub(in crate::allocation) fn relative(problem: &Problem) -> Vec<Priced> {
         let offer = Curve::reciprocal(0.0, unit(dimension))
             .and_then(|curve| Offer::between(curve, present / RANGE, present * RANGE));
         if let Ok(offer) = offer {
-            groups.push(Priced { members: vec![d], parts: 1.0, offers: vec![offer], rounded: None });
+            groups.push(Priced { members: vec![d], parts: 1.0, offers: vec![offer], rounded: None, zone: None });
         }
     }
     groups

@@ -21,16 +21,16 @@ impl Offer {
 
 impl Priced {
     /// Dimensions of the members at a half band of an offer, in the order of the members. A dimension that cannot follow
-    /// is None.
+    /// is None. `half_band` gives the half band of a member from its present dimension and its share.
     pub(in crate::allocation) fn offered<'p>(
         &'p self,
         offer: &'p Offer,
         present: &'p [Dimension],
-        half_band: impl Fn(&Dimension) -> f64 + 'p,
+        half_band: impl Fn(&Dimension, f64) -> f64 + 'p,
     ) -> impl Iterator<Item = (usize, Option<Result<Dimension, DimensionError>>)> + 'p {
         self.members.iter().enumerate().map(move |(place, &d)| {
             let own = &present[d];
-            (d, offer.dimension(place, own, half_band(own)))
+            (d, offer.dimension(place, own, half_band(own, self.share(place))))
         })
     }
 }
@@ -48,7 +48,7 @@ mod tests {
     fn offered(offer: &Offer, half_band: f64) -> Vec<Dimension> {
         let group = Priced::new(vec![0, 1], vec![offer.clone()]).unwrap();
         let of = |made: Option<Result<Dimension, DimensionError>>| made.unwrap().unwrap();
-        group.offered(offer, &present(), |_| half_band).map(|(_, made)| of(made)).collect()
+        group.offered(offer, &present(), |_, share| share * half_band).map(|(_, made)| of(made)).collect()
     }
 
     #[test]

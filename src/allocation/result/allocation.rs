@@ -76,6 +76,9 @@ pub struct Allocated {
     /// Index of the dimension in the problem; reports name it.
     #[serde(skip)]
     pub dimension: usize,
+    /// Zone whose half width is the tolerance. The dimension is then its first one.
+    #[serde(skip)]
+    pub zone: Option<AllocatedZone>,
     /// Half band before.
     pub before: f64,
     /// Half band after.
@@ -92,6 +95,17 @@ pub struct Allocated {
     /// Saving per unit by which that bound is widened, with all else unchanged. None within the bounds, and if it is
     /// not known.
     pub bound_price: Option<f64>,
+}
+
+/// Zone of a feature with a cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AllocatedZone {
+    /// Name of the zone in the study.
+    pub name: String,
+    /// Unit of the width.
+    pub unit: Option<String>,
+    /// Indices of all its dimensions in the problem.
+    pub members: Vec<usize>,
 }
 
 /// Nominal value that has moved.

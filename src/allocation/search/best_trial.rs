@@ -378,7 +378,7 @@ fn is_made(problem: &Problem, priced: &[Priced], offers: &[usize]) -> bool {
         same(own.mean(), made.mean()) && same(own.sigma(), made.sigma()) && same(own.half_band(), made.half_band())
     };
     priced.iter().zip(offers).all(|(group, &offer)| {
-        let mut offered = group.offered(&group.offers[offer], present, Dimension::half_band);
+        let mut offered = group.offered(&group.offers[offer], present, |own, _| own.half_band());
         offered.all(|(d, made)| made.is_some_and(|made| made.is_ok_and(|made| alike(&present[d], &made))))
     })
 }

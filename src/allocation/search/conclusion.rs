@@ -4,12 +4,13 @@ use crate::allocation::choice::machine::choose;
 use crate::allocation::choice::selection::Choice;
 use crate::allocation::choice::single_offer::Setting;
 use crate::allocation::cost::cost_curve::{Offer, Priced};
+use crate::allocation::cost::priced_zone::holder;
 use crate::allocation::cost::setup_cost::needed;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::form::Basis;
 use crate::allocation::requirement::registry::form_of;
 use crate::allocation::result::allocation::{
-    Allocated, Allocation, AllocationSolver, Attainable, Bound, Kept, Moved, Proof, Status,
+    Allocated, AllocatedZone, Allocation, AllocationSolver, Attainable, Bound, Kept, Moved, Proof, Status,
 };
 use crate::allocation::result::solver_result::Solved;
 use crate::allocation::search::best_trial::{SearchEnd, status_of_missed};
@@ -309,28 +310,31 @@ impl Driver<'_> {
     }
 
     pub(in crate::allocation) fn unchanged(&self, problem: &Problem) -> Vec<Allocated> {
-        let of = |group: &Priced, d: usize| {
-            let before = problem.dimensions()[d].half_band();
-            let each = group.parts / group.members.len() as f64;
+        let of = |group: &Priced, (dimension, zone): (usize, Option<AllocatedZone>)| {
+            let before = present(group, dimension, problem);
+            let each = group.parts / rows(group).len() as f64;
             Allocated {
-                dimension: d,
+                dimension,
+                zone,
                 before,
                 after: before,
-                cost_before: group.cost_to_hold(before).map(|cost| cost / group.parts * each),
+                cost_before: held(group, dimension, before)
+                    .or_else(|| group.cost_to_hold(before).map(|cost| cost / group.parts * each)),
                 cost_after: None,
                 process: None,
                 bound: None,
                 bound_price: None,
             }
         };
-        self.task.priced.iter().flat_map(|group| group.members.iter().map(move |&d| of(group, d))).collect()
+        self.task.priced.iter().flat_map(|group| rows(group).into_iter().map(move |row| of(group, row))).collect()
     }
 
     fn allocated(&self, original: &Problem, at: &[f64], offers: &[usize]) -> Vec<Allocated> {
         let mut all = Vec::new();
         for ((group, &t), &offer) in self.task.priced.iter().zip(at).zip(offers) {
             let offer = &group.offers[offer];
-            let each = group.parts / group.members.len() as f64;
+            let rows = rows(group);
+            let each = group.parts / rows.len() as f64;
             let near = |bound: f64| (t / bound - 1.0).abs() <= 1e-6 && offer.min < offer.max;
             let bound = if near(offer.min) {
                 Some(Bound::Least)
@@ -339,14 +343,16 @@ impl Driver<'_> {
             } else {
                 None
             };
-            for &d in &group.members {
-                let before = original.dimensions()[d].half_band();
+            for (dimension, zone) in rows {
+                let before = present(group, dimension, original);
                 all.push(Allocated {
-                    dimension: d,
+                    dimension,
+                    zone,
                     before,
                     after: t,
-                    cost_before: group.cost_to_hold(before).map(|cost| cost / group.parts * each),
-                    cost_after: Some(each * offer.curve.cost(t)),
+                    cost_before: held(group, dimension, before)
+                        .or_else(|| group.cost_to_hold(before).map(|cost| cost / group.parts * each)),
+                    cost_after: held(group, dimension, t).or(Some(each * offer.curve.cost(t))),
                     process: offer.process.clone(),
                     bound,
                     bound_price: None,
@@ -356,6 +362,32 @@ impl Driver<'_> {
         all.sort_by_key(|one| one.dimension);
         all
     }
+}
+
+/// Rows of a group in a report: its zones, or its dimensions.
+fn rows(group: &Priced) -> Vec<(usize, Option<AllocatedZone>)> {
+    match &group.zone {
+        None => group.members.iter().map(|&d| (d, None)).collect(),
+        Some(zone) => (zone.parts.iter())
+            .map(|part| {
+                let members: Vec<usize> = group.members[part.members.clone()].to_vec();
+                (members[0], Some(AllocatedZone { name: part.name.clone(), unit: part.unit.clone(), members }))
+            })
+            .collect(),
+    }
+}
+
+/// Cost of a zone that has one of its own in its group.
+fn held(group: &Priced, dimension: usize, t: f64) -> Option<f64> {
+    let place = group.members.iter().position(|&d| d == dimension)?;
+    let part = group.zone.as_ref()?.parts.iter().find(|part| part.members.contains(&place))?;
+    part.cost.as_ref().map(|(parts, curve)| parts * curve.cost(t))
+}
+
+/// Present tolerance of a row of a group.
+fn present(group: &Priced, dimension: usize, problem: &Problem) -> f64 {
+    let share = holder(std::slice::from_ref(group), dimension).map_or(1.0, |(_, share)| share);
+    problem.dimensions()[dimension].half_band() / share
 }
 
 /// The requirements at the end of a search.
@@ -427,7 +459,10 @@ pub(in crate::allocation) fn doubts(problem: &Problem, priced: &[Priced], alloca
         let mut offers = group.offers.iter().chain(&group.rounded);
         offers.any(|offer| !offer.curve.is_convex(offer.min, offer.max))
     };
-    let name = |group: &Priced| problem.dimensions()[group.members[0]].name().to_owned();
+    let name = |group: &Priced| match &group.zone {
+        Some(zone) => zone.parts[0].name.clone(),
+        None => problem.dimensions()[group.members[0]].name().to_owned(),
+    };
     let bent: Vec<String> = priced.iter().filter(is_bent).map(name).collect();
     let not_confirmed = (!allocation.confirmed && is_found(allocation.status)).then_some(Warning::NotConfirmed);
     let refuted = |kept: &Kept| {
@@ -457,7 +492,8 @@ fn is_found(status: Status) -> bool {
 fn moved(before: &Problem, after: &Problem) -> Vec<Moved> {
     let pairs = before.dimensions().iter().zip(after.dimensions()).enumerate();
     pairs
-        .filter(|(_, (before, after))| before.nominal() != after.nominal())
+        // A width of a zone moves with its tolerance, and is no nominal value of a part.
+        .filter(|(_, (before, after))| before.nominal() != after.nominal() && before.sigma() > 0.0)
         .map(|(dimension, (before, after))| Moved { dimension, before: before.nominal(), after: after.nominal() })
         .collect()
 }

@@ -14,9 +14,9 @@ use crate::allocation::surface::response::Responses;
 use crate::allocation::surface::sampled_moments::SampledCorrection;
 use crate::allocation::surface::uncertainty::Uncertainty;
 use crate::allocation::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
-use crate::analysis::{Analysis, CharacteristicAnalysis, Findings, analyze_keeping};
+use crate::analysis::{Analysis, CharacteristicAnalysis, Findings, analyze_keeping, run_method};
 use crate::assembly::Run;
-use crate::method::{MethodError, Options};
+use crate::method::{MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
 use sensitol_numeric::dimension::Dimension;
@@ -147,6 +147,7 @@ impl Driver<'_> {
         let mut responses = Responses::of(&problem, &findings.outcome, &analysis, &over_box);
         self.require_certainty(&analysis, &mut responses);
         self.correct(&problem, &analysis, &mut responses);
+        self.correct_widths(&problem, &options, &findings, &mut responses);
         if !problem.function().signature().costly {
             let Spent { places, points, .. } = &mut self.spent;
             responses.follow_corners(&problem, places, points);
@@ -206,7 +207,7 @@ impl Driver<'_> {
             return;
         }
         let at = |g: usize, factor: f64| {
-            let half = problem.dimensions()[priced[g].members[0]].half_band();
+            let half = priced[g].present(problem.dimensions());
             with_tolerances(problem.clone(), &priced[g..=g], &[factor * half]).ok()
         };
         let surface = |c: usize, g: usize, factor: f64| {
@@ -218,6 +219,46 @@ impl Driver<'_> {
         self.spent.points.fetch_add(points, Ordering::Relaxed);
         for (c, correction) in found {
             responses.of[c].sampled = correction;
+        }
+    }
+
+    /// Corrects the slopes by zones whose widths stand in formulas too, such as those with a bonus. Costs two analyses
+    /// of the derivatives for each.
+    fn correct_widths(&mut self, problem: &Problem, options: &Options, findings: &Findings, responses: &mut Responses) {
+        let priced = &self.task.priced;
+        let groups: Vec<(usize, usize)> = (priced.iter().enumerate())
+            .filter(|(_, group)| group.zone.as_ref().is_some_and(|zone| !zone.widths.is_empty()))
+            .map(|(g, group)| (g, group.members[0]))
+            .collect();
+        let open: Vec<usize> = (0..responses.of.len()).filter(|&c| !responses.is_sampled(c)).collect();
+        if groups.is_empty() || open.is_empty() || self.run.stopped() {
+            return;
+        }
+        let mut known: Vec<(usize, f64, Option<Outcome>)> = Vec::new();
+        for &(g, _) in &groups {
+            for factor in SampledCorrection::width_factors() {
+                let present = priced[g].present(problem.dimensions());
+                let moved = with_tolerances(problem.clone(), &priced[g..=g], &[factor * present]).ok();
+                known.push((g, factor, moved.and_then(|moved| run_method(&moved, options, self.run).ok())));
+            }
+        }
+        let moments = |outcome: &Outcome, c: usize| {
+            let surrogate = outcome.fitted[c].surrogate.as_ref()?;
+            Some(surrogate.contributions(outcome.plan.inputs())?.moments)
+        };
+        for c in open {
+            let model = |g: usize, factor: f64| {
+                let (.., outcome) = known.iter().find(|known| known.0 == g && known.1 == factor)?;
+                moments(outcome.as_ref()?, c)
+            };
+            let surface = |g: usize, factor: f64| {
+                let mut factors = vec![1.0; problem.dimensions().len()];
+                priced[g].members.iter().for_each(|&d| factors[d] = factor);
+                responses.moments(c, &factors)
+            };
+            let own = moments(&findings.outcome, c);
+            let found = own.and_then(|own| SampledCorrection::of_widths(&own, &groups, &model, &surface));
+            responses.of[c].sampled = found;
         }
     }
 
@@ -259,12 +300,13 @@ pub(in crate::allocation) fn with_tolerances(
 ) -> Result<Problem, AllocateError> {
     let mut dimensions = problem.dimensions().to_vec();
     for (group, &t) in priced.iter().zip(at) {
-        for &d in &group.members {
-            let factor = t / dimensions[d].half_band();
+        for (d, share) in group.shared() {
+            let factor = share * t / dimensions[d].half_band();
             if let Some(scaled) = dimensions[d].scaled(factor) {
                 dimensions[d] = scaled?;
             }
         }
+        follow(&mut dimensions, group, t)?;
     }
     Ok(problem.with_dimensions(dimensions)?)
 }
@@ -278,11 +320,22 @@ pub(in crate::allocation) fn with_choice(
 ) -> Result<Problem, AllocateError> {
     let mut dimensions = problem.dimensions().to_vec();
     for ((group, &t), &offer) in priced.iter().zip(at).zip(offers) {
-        for (d, made) in group.offered(&group.offers[offer], problem.dimensions(), |_| t) {
+        for (d, made) in group.offered(&group.offers[offer], problem.dimensions(), |_, share| share * t) {
             if let Some(made) = made {
                 dimensions[d] = made?;
             }
         }
+        follow(&mut dimensions, group, t)?;
     }
     Ok(problem.with_dimensions(dimensions)?)
+}
+
+/// Sets the widths in formulas of a zone.
+fn follow(dimensions: &mut [Dimension], group: &Priced, t: f64) -> Result<(), AllocateError> {
+    for &(d, factor) in group.zone.iter().flat_map(|zone| &zone.widths) {
+        if let Some(moved) = dimensions[d].moved(factor * t) {
+            dimensions[d] = moved?;
+        }
+    }
+    Ok(())
 }

@@ -77,7 +77,7 @@ impl Driver<'_> {
     /// Half bands in the proportions of the basis, with the same geometric mean as the present ones.
     fn proportions(&self, first: &LinearizationPoint) -> Vec<f64> {
         let dimensions = first.problem.dimensions();
-        let present = |g: usize| dimensions[self.task.priced[g].members[0]].half_band();
+        let present = |g: usize| self.task.priced[g].present(dimensions);
         let effect = |g: usize| {
             let of = |c: usize| -> f64 {
                 let spread = |d: &usize| first.responses.spread(c, *d).powi(2);

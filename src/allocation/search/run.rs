@@ -83,6 +83,28 @@ fn allocate_as(
     written: Option<AsWritten<'_>>,
 ) -> Result<Allocation, AllocateError> {
     task.check(problem, options)?;
+    let found = allocate_once(problem, task, options, run, written)?;
+    let mut refined: Option<(AllocationTask, Allocation)> = None;
+    // Each repetition ties a pair of zones or removes an offer.
+    for _ in 0..2 * task.priced.len() {
+        let (task, last) = refined.as_ref().map_or((task, &found), |(task, last)| (task, last));
+        let Some(task) = task.refining(last).filter(|_| last.cost_after.is_some() && !run.stopped()) else { break };
+        let again = allocate_once(problem, &task, options, run, written)?;
+        refined = Some((task, again));
+    }
+    Ok(match refined {
+        None => found,
+        Some((_, last)) => Allocation { cost_before: found.cost_before, ..last },
+    })
+}
+
+fn allocate_once(
+    problem: &Problem,
+    task: &AllocationTask,
+    options: &AllocationOptions,
+    run: &Run<'_>,
+    written: Option<AsWritten<'_>>,
+) -> Result<Allocation, AllocateError> {
     if options.confirm.is_some() {
         Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, options.seed)
             .map_err(SimulationError::from)?;
@@ -111,8 +133,7 @@ impl Driver<'_> {
             }
         }
         // The present tolerances are judged first, for comparison and in case nothing better is found.
-        let before: Vec<f64> =
-            self.task.priced.iter().map(|group| problem.dimensions()[group.members[0]].half_band()).collect();
+        let before: Vec<f64> = self.task.priced.iter().map(|group| group.present(problem.dimensions())).collect();
         let loosest_before = loosest(&first.responses, &constraints);
         let joint_before = joint(problem, &first.responses, self.options.seed);
         let start = self.start(problem, &first);

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_zone::holder;
 use crate::allocation::surface::band::{Reach, Scaling};
 use crate::allocation::surface::reject_fit::RejectFit;
 use crate::allocation::surface::sampled_moments::SampledCorrection;
@@ -219,7 +220,7 @@ impl Responses {
     pub(in crate::allocation) fn factors(&self, priced: &[Priced], at: &[f64]) -> Vec<f64> {
         let mut factors = vec![1.0; self.dimensions.len()];
         for (group, &t) in priced.iter().zip(at) {
-            group.members.iter().for_each(|&d| factors[d] = t / self.dimensions[d].half_band());
+            group.shared().for_each(|(d, share)| factors[d] = share * t / self.dimensions[d].half_band());
         }
         factors
     }
@@ -357,14 +358,14 @@ impl Responses {
         let sign = if above { 1.0 } else { -1.0 };
         let mut coefficients = vec![0.0; priced.len()];
         let mut constant = 0.0;
-        let mut zones: Vec<(&str, Option<usize>, f64)> = Vec::new();
+        let mut zones: Vec<(&str, Option<(usize, f64)>, f64)> = Vec::new();
         for (d, &slope) in slopes.iter().enumerate() {
             let reach = self.reach[d];
-            let group = priced.iter().position(|group| group.members.contains(&d));
+            let group = holder(priced, d);
             constant += sign * slope * (reach.middle - reach.lean * reach.half);
             // Values are per half band of the derivatives; coefficients are per unit of T.
             let mut add = |value: f64| match group {
-                Some(g) => coefficients[g] += value / self.dimensions[d].half_band(),
+                Some((g, share)) => coefficients[g] += value * share / self.dimensions[d].half_band(),
                 None => constant += value,
             };
             let wide = (slope * reach.half).abs();
@@ -379,7 +380,7 @@ impl Responses {
         for (zone, group, radius) in zones {
             let member = self.dimensions.iter().find(|dimension| dimension.zone() == Some(zone));
             match group.zip(member) {
-                Some((g, member)) => coefficients[g] += radius / member.half_band(),
+                Some(((g, share), member)) => coefficients[g] += radius * share / member.half_band(),
                 None => constant += radius,
             }
         }

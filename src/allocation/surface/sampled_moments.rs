@@ -23,6 +23,9 @@ use sensitol_numeric::sampling::Sampler;
 const POINTS: u64 = 1 << 14;
 /// Half of the difference in `ln T`. Its truncation is of the order of `STEP^2/6`, 4e-4.
 const STEP: f64 = 0.05;
+/// Half of the difference in `ln T` for moments by derivatives, which are smooth. Its truncation is of the order of
+/// `WIDTH_STEP^2/6`, 2e-5 of a slope.
+const WIDTH_STEP: f64 = 0.01;
 /// Greatest distance from the linearization point, in `ln T`, at which a slope is followed.
 const FAR: f64 = 0.7;
 
@@ -46,6 +49,31 @@ fn difference(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
 }
 
 impl SampledCorrection {
+    /// Correction of the slopes by groups whose widths stand in formulas too, for these do not grow as the surface has
+    /// it. `moments` are those of the surface at the linearization point. `model` gives those of the model with a group
+    /// at a factor, and `surface` those of the surface there. Returns None if moments are unknown.
+    pub(in crate::allocation) fn of_widths(
+        moments: &Moments,
+        groups: &[(usize, usize)],
+        model: &dyn Fn(usize, f64) -> Option<Moments>,
+        surface: &dyn Fn(usize, f64) -> Option<Moments>,
+    ) -> Option<Self> {
+        let sigma = moments.sigma();
+        let slope = |&(g, d): &(usize, usize)| {
+            let [low, high] = Self::width_factors().map(|factor| {
+                Some(difference(figures(&model(g, factor)?, sigma)?, figures(&surface(g, factor)?, sigma)?))
+            });
+            let apart = difference(high?, low?);
+            Some((d, apart.map(|apart| apart / (2.0 * WIDTH_STEP))))
+        };
+        Some(Self { sigma, offset: [0.0; 4], slopes: groups.iter().map(slope).collect::<Option<_>>()? })
+    }
+
+    /// Factors at which [`of_widths`](Self::of_widths) asks for moments: below and above 1.
+    pub(in crate::allocation) fn width_factors() -> [f64; 2] {
+        [-WIDTH_STEP, WIDTH_STEP].map(libm::exp)
+    }
+
     /// Most groups. More would take over four million points for every round. Their surfaces stay uncorrected, and no
     /// optimum is claimed.
     pub(in crate::allocation) const MOST_GROUPS: usize = 128;

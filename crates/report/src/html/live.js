@@ -64,8 +64,8 @@ const live = (() => {
 
   /// What these settings cost, by the cheapest process that holds the tightest member of each group, as the engine counts it
   /// (Priced::cost_to_hold); no finite number where no process does.
-  const cost = (data, settings) => data.costs.map(({ members, others, parts, offers }) => {
-    const t = Math.min(others ?? Infinity, ...members.map((i) => settings[i].factor * data.dimensions[i].half));
+  const cost = (data, settings) => data.costs.map(({ members, shares, others, parts, offers }) => {
+    const t = Math.min(others ?? Infinity, ...members.map((i, k) => settings[i].factor * data.dimensions[i].half / (shares?.[k] ?? 1)));
     const alone = offers.length === 1;
     const along = (points, held) => {
       const next = points.findIndex(([known]) => known >= held);

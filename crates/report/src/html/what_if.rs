@@ -37,6 +37,9 @@ pub struct WhatIf {
 struct Cost {
     /// Indices of the members that the page lists.
     members: Vec<usize>,
+    /// Half band of every listed member per unit of the tolerance. None if all are 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shares: Option<Vec<f64>>,
     /// Tightest half-width of the other members. None if there are none.
     others: Option<f64>,
     parts: f64,
@@ -383,6 +386,7 @@ fn contents(fit: &Fit, power: Power) -> (f64, Vec<[f64; 4]>, Pairs, Option<f64>)
 impl Cost {
     fn of(problem: &Problem, varying: &[usize], group: &Priced) -> Self {
         let place = |d: &usize| varying.iter().position(|known| known == d);
+        let share = |d: usize| group.members.iter().position(|&own| own == d).map_or(1.0, |at| group.share(at));
         let others = group.members.iter().filter(|d| place(d).is_none());
         let offer = |curve: &Curve, min: f64, max: f64| {
             let [a, b, shape] = curve.constants();
@@ -391,7 +395,11 @@ impl Cost {
         };
         Self {
             members: group.members.iter().filter_map(place).collect(),
-            others: others.map(|&d| problem.dimensions()[d].half_band()).reduce(f64::min),
+            shares: group.zone.as_ref().map(|_| {
+                let listed = |(at, d): (usize, &usize)| place(d).map(|_| group.share(at));
+                group.members.iter().enumerate().filter_map(listed).collect()
+            }),
+            others: others.map(|&d| problem.dimensions()[d].half_band() / share(d)).reduce(f64::min),
             parts: group.parts,
             offers: group.offers.iter().map(|one| offer(&one.curve, one.min, one.max)).collect(),
         }

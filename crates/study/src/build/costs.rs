@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::build::grades::graded;
+use crate::build::zone_cost;
 use crate::dimension;
 use crate::entries::cost_entry::{CostEntry, ProcessEntry, RequireEntry};
 use crate::entries::file::{CharacteristicEntry, DimensionEntry, StudyFile};
@@ -103,7 +104,10 @@ pub(crate) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Res
             continue;
         }
         let (members, parts) = members(file, problem, name, &key)?;
-        let offers = offers(entry, source, name, &key, &problem.dimensions()[members[0]])?;
+        let dimension = &problem.dimensions()[members[0]];
+        // T of a zone is half its width, which its first dimension has by its share.
+        let present = zone_cost::present(entry, name, problem)?.unwrap_or(dimension.half_band());
+        let offers = offers(entry, source, name, &key, (dimension, present))?;
         groups.push(Group { name, members, parts, offers });
     }
     // `same_as` may name a dimension further down, so it is resolved when all groups exist.
@@ -139,7 +143,8 @@ pub(crate) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Res
             let key = format!("costs.{}.processes", name.get_ref());
             made(&mut all, processes.get_ref(), &members, problem, &key)?;
         }
-        Priced::new(members, all).map(|priced| Priced { parts, ..priced }.rounding(rounded)).map_err(at)
+        let zone = zone_cost::zone(file, &members, problem);
+        Priced::new(members, all).map(|priced| Priced { parts, zone, ..priced }.rounding(rounded)).map_err(at)
     };
     groups.into_iter().map(priced).collect()
 }
@@ -203,6 +208,11 @@ fn one_form(entry: &CostEntry, name: &Spanned<String>, key: &str) -> Result<(), 
 fn members(file: &StudyFile, problem: &Problem, name: &Spanned<String>, key: &str) -> Result<(Vec<usize>, f64), Fault> {
     let text = name.get_ref();
     let dimensions = problem.dimensions();
+    if let Some((_, entry)) = file.costs.0.iter().find(|(other, _)| other.get_ref() == text)
+        && let Some(of) = &entry.get_ref().of
+    {
+        return zone_cost::members(of, problem, key).map(|members| (members, 1.0));
+    }
     let of_zone: Vec<usize> = (0..dimensions.len()).filter(|&d| dimensions[d].zone() == Some(text.as_str())).collect();
     if !of_zone.is_empty() {
         return Ok((of_zone, 1.0));
@@ -243,11 +253,11 @@ fn offers(
     source: &Source,
     name: &Spanned<String>,
     key: &str,
-    dimension: &Dimension,
+    of: (&Dimension, f64),
 ) -> Result<Offers, Fault> {
     match &entry.processes {
         Some(processes) => process_offers(processes, key),
-        None => curve_offers(entry, source, name, key, dimension),
+        None => curve_offers(entry, source, name, key, of),
     }
 }
 
@@ -257,11 +267,10 @@ fn curve_offers(
     source: &Source,
     name: &Spanned<String>,
     key: &str,
-    dimension: &Dimension,
+    (dimension, present): (&Dimension, f64),
 ) -> Result<Offers, Fault> {
     let CostEntry { model, a, b, k, c, min, max, .. } = entry;
     let numbers = Numbers { model, a, b, k, c, min, max };
-    let present = dimension.half_band();
     let offer = match written(entry, source, key)? {
         Some(curve) => numbers.offer_of(curve, key, &name.span(), present)?,
         None => numbers.offer(key, &name.span(), Some(present))?,

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use crate::entries::file::StudyFile;
+use crate::entries::file::{ContactsEntry, StudyFile};
+use crate::entries::spanned::Spanned;
 use crate::error::{Fault, fault};
 use crate::expand::Elements;
 use crate::source::{Source, in_formula};
 use sensitol::assembly::formula::Formula;
-use sensitol::assembly::implicit::{Condition, Conditions, ConditionsError, Link, Unknown};
+use sensitol::assembly::implicit::{Condition, Conditions, ConditionsError, Link, PressedJoint, Unknown};
 use sensitol_numeric::dimension::Dimension;
 
 /// Conditions of a study, with the places of their formulas.
@@ -61,7 +62,11 @@ pub(crate) fn implicit(
     let nominal = dimensions.iter().map(Dimension::nominal).collect();
     let conditions = Conditions::new(unknowns, conditions, nominal).map_err(|error| placed(file, error))?;
     let conditions = conditions.with_subjects(elements.subjects.iter().cloned());
-    let conditions = conditions.with_pressed(elements.pressed.clone());
+    let pressed = |(name, entry): &(Spanned<String>, Spanned<ContactsEntry>)| {
+        let ContactsEntry { sets, changes } = entry.get_ref();
+        PressedJoint { joint: name.get_ref().clone(), sets: sets.clone(), changes: changes.clone() }
+    };
+    let conditions = conditions.with_pressed(file.contacts.0.iter().map(pressed).collect());
     Ok(Some(Implicit { conditions, places }))
 }
 

@@ -7,6 +7,7 @@ use serde::de::{IgnoredAny, Visitor, value};
 use serde::{Deserialize, Deserializer};
 
 use crate::entries::distribution_entry::{DistributionEntry, distribution};
+use crate::entries::named_entries::Entries;
 #[cfg(feature = "schema")]
 use crate::entries::schema_parts as registry;
 use crate::entries::spanned::Spanned;
@@ -44,6 +45,12 @@ pub(crate) struct CostEntry {
     /// The end of the band that stays where it is, `lower` or `upper`; that of a fit unless given, and the middle otherwise.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["lower", "upper", "middle"])))]
     pub(crate) fixed_side: Option<Spanned<String>>,
+    /// The dimensions of a zone, each with its half band per unit of the half band T. One without a tolerance has that times T as nominal value.
+    pub(crate) of: Option<Spanned<Entries<f64>>>,
+    /// The unit of T for a zone.
+    pub(crate) unit: Option<Spanned<String>>,
+    /// The cost of a wider zone that this one refines: its T is never above that.
+    pub(crate) within: Option<Spanned<String>>,
     /// The dimension with which this one shares tolerance and process; each part costs.
     pub(crate) same_as: Option<Spanned<String>>,
     /// The processes that compete for it.

@@ -64,6 +64,9 @@ pub(crate) struct StudyFile {
     /// Vectors that close: two equations each.
     #[serde(default)]
     pub(crate) loops: Entries<Vec<LinkEntry>>,
+    /// Contacts of joints that press a part, as `sensitol expand` writes them: the comparisons of the equations that choose between sets.
+    #[serde(default)]
+    pub(crate) contacts: Entries<ContactsEntry>,
     /// Rigid parts in space, each with features by name. The first part stands still, or the one with ground = true.
     #[serde(default, rename = "parts")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::parts"))]
@@ -115,6 +118,20 @@ pub(crate) struct StudyFile {
     /// Options of the analysis; flags of the command line win.
     #[serde(default)]
     pub(crate) analysis: AnalysisEntry,
+}
+
+/// One line of `[contacts]`.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table such as { sets = [[\"foot1\", \"foot2\", \"foot3\"]], changes = [] }"
+)]
+pub(crate) struct ContactsEntry {
+    /// Contacts that carry the force, for each set on which the part can rest.
+    pub(crate) sets: Vec<Vec<String>>,
+    /// Comparisons of the equations, as written there. Where the one of index k is true, set k + 1 goes before all sets up to k.
+    pub(crate) changes: Vec<String>,
 }
 
 /// One line of `[dimensions]`.

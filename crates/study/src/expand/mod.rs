@@ -24,7 +24,7 @@ use crate::tree::{Key, Tree, Value};
 pub(super) use assembly::NominalValues;
 use assembly::WrittenAssembly;
 use sensitol::assembly::formula::is_plain;
-use sensitol::assembly::implicit::{EquationSubject, PressedJoint};
+use sensitol::assembly::implicit::EquationSubject;
 
 /// A study with plain keys only.
 pub(super) struct Expanded {
@@ -39,6 +39,8 @@ pub(super) struct Expanded {
     pub(super) spatial: Option<SpatialFacts>,
     /// Zones of features in space whose datums leave something free that they bound.
     open_zones: Vec<OpenZone>,
+    /// Zones with a cost.
+    pub(super) zones: Vec<ZonePlace>,
     /// Dimensions without a tolerance to which a general one would apply, with half of it. Empty if the study has general tolerances.
     general: Vec<(String, f64)>,
 }
@@ -52,8 +54,23 @@ pub(super) struct Elements {
     pub(super) closing: Vec<Closing>,
     /// Joints of rigid parts, by the names of their equations.
     pub(super) subjects: Vec<(String, EquationSubject)>,
-    /// Contacts of the joints that press a part.
-    pub(super) pressed: Vec<PressedJoint>,
+}
+
+/// Place of a zone in the study.
+#[derive(Debug, Clone)]
+pub(super) struct ZonePlace {
+    /// Line of `[costs]` that names it.
+    pub(super) cost: String,
+    /// Keys below `parts` that lead to its width.
+    pub(super) path: Vec<String>,
+}
+
+impl ZonePlace {
+    /// Full name of the zone, such as `housing.bore.position`.
+    pub(super) fn name(&self) -> String {
+        let keys = self.path.iter().filter(|key| *key != "patterns");
+        keys.map(String::as_str).collect::<Vec<_>>().join(".")
+    }
 }
 
 /// A hole with a pin that may be larger than it.
@@ -87,6 +104,7 @@ pub(super) fn expand(
         elements: Elements::default(),
         spatial: None,
         open_zones: Vec::new(),
+        zones: Vec::new(),
         general: Vec::new(),
     };
     configurations::expand(&mut expanded, configuration, data)?;

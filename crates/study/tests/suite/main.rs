@@ -20,3 +20,4 @@ mod studies;
 mod texts;
 mod tolerances;
 mod warnings;
+mod zone_costs;

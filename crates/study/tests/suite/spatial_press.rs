@@ -199,6 +199,10 @@ fn the_expanded_study_gives_the_same_figures() {
     for heights in [[0.4, -0.2, 0.1, 0.9], [1.0, 0.2, 0.1, -0.5]] {
         assert_eq!(at(&study, &heights), at(&expanded, &heights));
     }
+    // Its warnings name the joint and its contacts too.
+    let [own, plain] = [&study, &expanded].map(|study| analyze(&study.problem, &Method::Auto.into()).unwrap());
+    shares(&plain.warnings, false);
+    assert_eq!(own.warnings, plain.warnings);
 }
 
 /// Text of a table on a floor whose whole is turned by `turned` degrees about x, with lengths multiplied by a factor.

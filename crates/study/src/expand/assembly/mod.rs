@@ -24,7 +24,7 @@ use crate::expand::{Expanded, Origin, Tree, Value, wrong_type};
 use crate::scene::{ExtentQuantity, SpatialFacts, in_unit};
 use crate::tree::Key;
 use sensitol::assembly::formula::Formula;
-use sensitol::assembly::implicit::{EquationSubject, PressedJoint};
+use sensitol::assembly::implicit::EquationSubject;
 use sensitol_numeric::names::nearest;
 use sensitol_spatial::{
     Assembly, ClosedAssembly, FeatureId, JointKind, NamedFormula, PartJoint, PartPose, Quantity, SpatialError, Subject,
@@ -335,10 +335,15 @@ fn write(expanded: &mut Expanded, read: &Read, closed: ClosedAssembly, values: &
         };
         formulas.push((key(&entry.span, &formula.name), line));
     }
+    let mut pressed = Vec::new();
     for contacts in &closed.pressed {
-        let joint = read.assembly.joints[contacts.joint].name.clone();
-        let (sets, changes) = (contacts.sets.clone(), contacts.changes.clone());
-        expanded.elements.pressed.push(PressedJoint { joint, sets, changes });
+        let (entry, joint) = (&read.joints[contacts.joint], &read.assembly.joints[contacts.joint].name);
+        origin("contacts", joint, entry);
+        let list = |items: Vec<Tree>| Tree { span: entry.span.clone(), value: Value::Array(items) };
+        let texts = |items: &[String]| list(items.iter().map(|item| text(&entry.span, item.clone())).collect());
+        let sets = list(contacts.sets.iter().map(|set| texts(set)).collect());
+        let keys = vec![(key(&entry.span, "sets"), sets), (key(&entry.span, "changes"), texts(&contacts.changes))];
+        pressed.push((key(&entry.span, joint), Tree { span: entry.span.clone(), value: Value::Table(keys) }));
     }
     let mut equations = Vec::new();
     for (equation, joint) in closed.equations {
@@ -351,7 +356,8 @@ fn write(expanded: &mut Expanded, read: &Read, closed: ClosedAssembly, values: &
         }
         equations.push((key(&entry.span, &equation.name), text(&entry.span, equation.formula)));
     }
-    for (section, lines) in [("unknowns", unknowns), ("formulas", formulas), ("equations", equations)] {
+    let sections = [("unknowns", unknowns), ("formulas", formulas), ("equations", equations), ("contacts", pressed)];
+    for (section, lines) in sections {
         if let Some(entries) = expanded.tree.section(section).filter(|_| !lines.is_empty()) {
             entries.extend(lines);
         }

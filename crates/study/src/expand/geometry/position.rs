@@ -12,7 +12,7 @@ pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
     if !matches!(line.value("position").value, Value::Table(_)) {
         return Ok(None);
     }
-    let frame = line.table("position", &["zone", "hole", "pin", "at", "form", "most"], "")?;
+    let frame = line.table("position", &["zone", "hole", "pin", "at", "form", "most", "width"], "")?;
     let missing = "write the diameter in the feature control frame, such as zone = 0.2";
     frame.needed("zone", missing)?;
     let zone = frame.size("zone")?.unwrap_or(0.0);
@@ -67,11 +67,29 @@ pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
     let mut made = Plain::default();
     let mut keys = others(line, &["position", "nominal", "unit"]);
     keys.insert(0, (key(line, "nominal"), pair(line, [0.0; 2])));
-    keys.insert(1, (key(line, "position"), number(line, 2.0)));
-    made.dimension(line, unit_zone.clone(), Of::Plain, keys);
-    made.formula(line, of_zone.clone(), Of::Line, format!("{} + {bonus}", literal(zone, own)));
+    // A zone with a cost has its width as a dimension, and the places in it are dimensions of its own.
+    let width = frame.get("width").and_then(|width| match &width.value {
+        Value::Text(name) => Some(quoted(name)),
+        _ => None,
+    });
+    match &width {
+        None => {
+            keys.insert(1, (key(line, "position"), number(line, 2.0)));
+            made.dimension(line, unit_zone.clone(), Of::Plain, keys);
+            made.formula(line, of_zone.clone(), Of::Line, format!("{} + {bonus}", literal(zone, own)));
+        }
+        Some(width) => {
+            keys.insert(1, (key(line, "position"), number(line, zone)));
+            made.dimension(line, unit_zone.clone(), Of::Line, keys);
+            made.formula(line, of_zone.clone(), Of::Line, format!("{width} + {bonus}"));
+        }
+    }
     for (axis, nominal) in ["_x", "_y"].into_iter().zip(nominal) {
-        let deviation = format!("{}/2*{}", quoted(&of_zone), quoted(&format!("{unit_zone}{axis}")));
+        let place = quoted(&format!("{unit_zone}{axis}"));
+        let deviation = match &width {
+            None => format!("{}/2*{place}", quoted(&of_zone)),
+            Some(width) => format!("{}/{width}*{place}", quoted(&of_zone)),
+        };
         let formula = match nominal {
             0.0 => deviation,
             nominal => format!("{} + {deviation}", literal(nominal, own)),

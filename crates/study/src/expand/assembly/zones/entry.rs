@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::frame::{ConstantFrame, number};
-use super::lines::{Extent, Owner};
+use super::lines::{Extent, Owner, ZoneLabel};
 use crate::error::{Fault, StudyFault, fault};
 use crate::expand::assembly::unknown_key;
 use crate::expand::{Tree, Value, quoted, wrong_type};
@@ -70,6 +70,13 @@ pub(super) struct ZoneEntry<'t> {
     pub(super) table: Option<&'t Tree>,
 }
 
+impl ZoneEntry<'_> {
+    /// Label of the zone for the lines of a feature or pattern with this full name.
+    pub(super) fn label(&self, of: &str) -> ZoneLabel {
+        ZoneLabel { name: format!("{of}.{}", self.key), half: self.width.number().map(|width| 0.5 * width) }
+    }
+}
+
 /// Extent of a feature, over which its zones hold.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum FeatureExtent {
@@ -127,7 +134,7 @@ fn feature<'t>(
     (direction, kind): (&str, FeatureKind),
 ) -> Result<ZonedFeature<'t>, Fault> {
     let path = format!("parts.{}.{}", part.name, key.name);
-    let owner = Owner { key: path.clone(), span: key.span.clone(), note: String::new() };
+    let owner = Owner { key: path.clone(), span: key.span.clone(), note: String::new(), zone: None };
     let even = law(tree.get("distribution"), &format!("{path}.distribution"))?;
     let mut zones: Vec<ZoneEntry<'t>> = Vec::new();
     for (name, zone_kind, fits, instead) in ZONES {

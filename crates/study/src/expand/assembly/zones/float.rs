@@ -40,7 +40,8 @@ pub(super) fn expand(
     faults: &mut Faults,
 ) {
     for (name, joint) in study.get("joints").map_or(&[][..], Tree::entries) {
-        let owner = Owner { key: format!("joints.{}", name.name), span: name.span.clone(), note: String::new() };
+        let owner =
+            Owner { key: format!("joints.{}", name.name), span: name.span.clone(), note: String::new(), zone: None };
         if KEYS.iter().any(|key| joint.get(key).is_some()) {
             let Some(keys) = faults.take(float(study, name, joint, &owner, features, lines)) else { continue };
             replace(expanded, name, &KEYS, keys);
@@ -245,7 +246,7 @@ fn form(joint: &Tree, features: &[ZonedFeature<'_>], lines: &mut Lines) -> Resul
         }
         let note =
             format!("{}: at the contact, {}", zone.key, if out { "0 .. zone" } else { "half the zone on either side" });
-        let owner = Owner { note, ..of.owner.clone() };
+        let owner = Owner { note, zone: Some(zone.label(&of.full())), ..of.owner.clone() };
         match (&zone.width, out) {
             (Extent::Number(width), true) => {
                 lines.offset_band(&owner, &name, [0.0, *width], &zone.spread);

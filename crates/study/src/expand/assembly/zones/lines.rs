@@ -7,6 +7,11 @@ use crate::error::{Fault, Faults};
 use crate::expand::{Expanded, Origin, Tree, Value, quoted};
 use crate::tree::Key;
 
+/// Ending of the name of a place on a zone of radius 1.
+const UNIT: &str = ".unit";
+/// Ending of the name of a place in the whole zone, of which other deviations take a part.
+const WHOLE: &str = ".whole";
+
 /// Quantity that a line measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LineUnit {
@@ -31,6 +36,29 @@ pub(super) struct Owner {
     pub(super) key: String,
     pub(super) span: Range<usize>,
     pub(super) note: String,
+    /// Zone whose lines these are; None for a float.
+    pub(super) zone: Option<ZoneLabel>,
+}
+
+/// Zone of a feature, for the lines that it makes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ZoneLabel {
+    /// Full name, such as `housing.bore.position`.
+    pub(super) name: String,
+    /// Half of its width; None if that is a formula.
+    pub(super) half: Option<f64>,
+}
+
+/// Zone with the lines that it has made.
+#[derive(Debug, Clone)]
+pub(super) struct MadeZone {
+    pub(super) label: ZoneLabel,
+    /// Dimensions whose half bands are proportional to the width, with their half bands.
+    pub(super) members: Vec<(String, f64)>,
+    /// Dimension that holds the width itself, for formulas.
+    pub(super) width: Option<String>,
+    /// True if its lines do not follow the width, such as a band that is not about 0.
+    pub(super) is_uneven: bool,
 }
 
 /// A dimension within a band, by the text that formulas need and by its name.
@@ -47,6 +75,10 @@ pub(super) struct Lines {
     blocks: Vec<Tree>,
     /// Names of made lines with their owners.
     owners: Vec<(String, Owner)>,
+    /// Zones with the lines that they have made.
+    pub(super) zones: Vec<MadeZone>,
+    /// Names of the zones with a cost.
+    pub(super) priced: Vec<String>,
     /// Unit of lengths; None if the study has none.
     unit: Option<String>,
     converts: bool,
@@ -74,7 +106,8 @@ fn plain(value: f64) -> String {
 impl Lines {
     pub(super) fn new(unit: Option<String>, converts: bool) -> Self {
         let (dimensions, formulas, blocks, owners) = Default::default();
-        Self { dimensions, formulas, blocks, owners, unit, converts }
+        let (zones, priced) = Default::default();
+        Self { dimensions, formulas, blocks, owners, zones, priced, unit, converts }
     }
 
     /// Text of a length in a formula, with its unit: a lever times an angle is a length.
@@ -128,14 +161,59 @@ impl Lines {
             }
             Extent::Formula(radius) => {
                 keys.push(("position", number(owner, 2.0)));
-                self.dimension(owner, format!("{name}.unit"), LineUnit::Plain, keys, spread);
+                self.dimension(owner, format!("{name}{UNIT}"), LineUnit::Plain, keys, spread);
                 for axis in ["_x", "_y"] {
-                    let product = format!("{radius}*{}", quoted(&format!("{name}.unit{axis}")));
+                    let product = format!("{radius}*{}", quoted(&format!("{name}{UNIT}{axis}")));
                     self.formula(owner, format!("{name}{axis}"), unit, product);
                 }
             }
         }
         both
+    }
+
+    /// A point in a circle of which other deviations take a part: `used` of `half`. The width of a zone with a cost is a
+    /// dimension, so that the part changes with it.
+    pub(super) fn circle_left(
+        &mut self,
+        owner: &Owner,
+        name: &str,
+        (half, used): (&Extent, &str),
+        spread: &[(Key, Tree)],
+    ) -> [String; 2] {
+        let (Some(width), Extent::Number(radius)) = (self.width(owner), half) else {
+            let left = format!("({} - {used})", self.length(half));
+            return self.circle(owner, name, &Extent::Formula(left), LineUnit::Length, spread);
+        };
+        let keys = vec![
+            ("nominal", self.list(owner, vec![number(owner, 0.0), number(owner, 0.0)])),
+            ("position", number(owner, decimal(2.0 * radius, KEPT))),
+        ];
+        self.dimension(owner, format!("{name}{WHOLE}"), LineUnit::Length, keys, spread);
+        ["_x", "_y"].map(|axis| {
+            let product = format!("{}*(1 - 2*{used}/{width})", quoted(&format!("{name}{WHOLE}{axis}")));
+            self.formula(owner, format!("{name}{axis}"), LineUnit::Length, product);
+            quoted(&format!("{name}{axis}"))
+        })
+    }
+
+    /// A band of which other deviations take a part, as [`circle_left`](Self::circle_left).
+    pub(super) fn band_left(
+        &mut self,
+        owner: &Owner,
+        name: &str,
+        (half, used): (&Extent, &str),
+        spread: &[(Key, Tree)],
+    ) -> String {
+        let (Some(width), Extent::Number(radius)) = (self.width(owner), half) else {
+            let left = format!("({} - {used})", self.length(half));
+            return self.band(owner, name, &Extent::Formula(left), LineUnit::Length, spread).text;
+        };
+        let whole = format!("{name}{WHOLE}");
+        let keys = vec![("nominal", number(owner, 0.0)), ("tolerance", number(owner, *radius))];
+        self.dimension(owner, whole.clone(), LineUnit::Length, keys, spread);
+        let product = format!("{}*(1 - 2*{used}/{width})", quoted(&whole));
+        self.formula(owner, name.to_owned(), LineUnit::Length, product);
+        quoted(name)
     }
 
     /// A dimension about 0 with this half band.
@@ -160,7 +238,7 @@ impl Lines {
                 Band { text, dimension: name.to_owned() }
             }
             Extent::Formula(half) => {
-                let dimension = format!("{name}.unit");
+                let dimension = format!("{name}{UNIT}");
                 keys.push(("tolerance", number(owner, 1.0)));
                 self.dimension(owner, dimension.clone(), LineUnit::Plain, keys, spread);
                 self.formula(owner, name.to_owned(), unit, format!("{half}*{}", quoted(&dimension)));
@@ -192,11 +270,59 @@ impl Lines {
         keys: Vec<(&'static str, Tree)>,
         spread: &[(Key, Tree)],
     ) {
+        self.record(owner, &name, &keys);
         let mut keys: Vec<(Key, Tree)> = keys.into_iter().map(|(name, tree)| (key(owner, name), tree)).collect();
         keys.extend(spread.iter().cloned());
         keys.extend(self.unit(unit).map(|unit| (key(owner, "unit"), text(owner, unit))));
         self.dimensions.push((key(owner, &name), Tree { span: owner.span.clone(), value: Value::Table(keys) }));
         self.owners.push((name, owner.clone()));
+    }
+
+    /// Records a line among those of its zone.
+    fn record(&mut self, owner: &Owner, name: &str, keys: &[(&'static str, Tree)]) {
+        let Some(label) = &owner.zone else { return };
+        let of = |key: &str| keys.iter().find(|(known, _)| *known == key).map(|(_, tree)| &tree.value);
+        let half = match (of("tolerance"), of("position")) {
+            (Some(Value::Number(half)), _) => Some(*half),
+            (_, Some(Value::Number(width))) => Some(0.5 * width),
+            (_, Some(Value::Table(frame))) => frame.iter().find_map(|(key, tree)| match &tree.value {
+                Value::Number(width) if key.name == "zone" => Some(0.5 * width),
+                _ => None,
+            }),
+            _ => None,
+        };
+        let (plain, table) = match of("position") {
+            Some(Value::Table(frame)) => (frame.iter().any(|(key, _)| key.name == "width"), true),
+            _ => (!name.ends_with(UNIT), false),
+        };
+        let zone = self.zone_of(label);
+        match half.filter(|_| plain) {
+            // A bonus puts the places in a line of its own.
+            Some(half) => zone.members.push((if table { format!("{name}{UNIT}") } else { name.to_owned() }, half)),
+            None => zone.is_uneven = true,
+        }
+    }
+
+    fn zone_of(&mut self, label: &ZoneLabel) -> &mut MadeZone {
+        let place = self.zones.iter().position(|zone| zone.label.name == label.name).unwrap_or_else(|| {
+            let label = label.clone();
+            self.zones.push(MadeZone { label, members: Vec::new(), width: None, is_uneven: false });
+            self.zones.len() - 1
+        });
+        &mut self.zones[place]
+    }
+
+    /// Dimension that holds the width of a zone, if the zone has a cost: the width then changes, and formulas need it.
+    pub(super) fn width(&mut self, owner: &Owner) -> Option<String> {
+        let label = owner.zone.clone().filter(|label| self.priced.contains(&label.name))?;
+        let half = label.half.filter(|half| *half > 0.0)?;
+        let name = label.name.clone();
+        if self.zone_of(&label).width.is_none() {
+            let plain = Owner { zone: None, ..owner.clone() };
+            self.dimension(&plain, name.clone(), LineUnit::Length, vec![("nominal", number(owner, 2.0 * half))], &[]);
+            self.zone_of(&label).width = Some(name.clone());
+        }
+        Some(quoted(&name))
     }
 
     /// A line of `[formulas]`.
@@ -222,6 +348,11 @@ impl Lines {
 
     pub(super) fn list(&self, owner: &Owner, items: Vec<Tree>) -> Tree {
         Tree { span: owner.span.clone(), value: Value::Array(items) }
+    }
+
+    /// Unit of lengths; None if the study has none.
+    pub(super) fn length_unit(&self) -> Option<String> {
+        self.unit.clone()
     }
 
     fn unit(&self, of: LineUnit) -> Option<String> {

@@ -2,6 +2,7 @@
 //!
 //! A zone becomes a displacement (`shift`) and a rotation (`tilt`) of the frame of its feature, a float becomes the `offset` of a joint.
 
+mod cost;
 mod datums;
 mod deviation;
 mod entry;
@@ -42,6 +43,8 @@ pub(in crate::expand) fn expand(expanded: &mut Expanded) -> Result<Option<LineOw
         }
     }
     faults.none()?;
+    let costs = cost::costs(&study, &features)?;
+    lines.priced = costs.iter().map(|cost| cost.zone.clone()).collect();
     let mut faults = Faults::default();
     let materials = float::materials(&study, &features);
     for (key, tree) in parts.entries() {
@@ -58,6 +61,7 @@ pub(in crate::expand) fn expand(expanded: &mut Expanded) -> Result<Option<LineOw
     }
     float::expand(expanded, &study, &features, &mut lines, &mut faults);
     faults.none()?;
+    expanded.zones = cost::write(&mut expanded.tree, costs, &features, &lines)?;
     Ok(Some(lines.write(expanded)))
 }
 

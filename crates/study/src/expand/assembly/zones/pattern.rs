@@ -57,7 +57,7 @@ fn read<'f, 't>(
 ) -> Result<Pattern<'f, 't>, Fault> {
     let path = format!("parts.{}.patterns.{}", part.name, key.name);
     unknown_key(tree, &path, &["of", "position", "within"])?;
-    let owner = Owner { key: path.clone(), span: key.span.clone(), note: String::new() };
+    let owner = Owner { key: path.clone(), span: key.span.clone(), note: String::new(), zone: None };
     let expected = "the axes of the pattern such as of = [\"h1\", \"h2\"]";
     let Some(Value::Array(items)) = tree.get("of").map(|of| &of.value) else {
         return Err(wrong_type(tree.get("of").unwrap_or(tree), format!("{path}.of"), expected));
@@ -102,7 +102,7 @@ fn read<'f, 't>(
     }
     let segment = |name: &'static str| -> Result<Option<ZoneEntry<'t>>, Fault> {
         let Some((found, given)) = tree.entries().iter().find(|(key, _)| key.name == name) else { return Ok(None) };
-        zone(study, ("position", ZoneKind::Eccentricity), found, given, &format!("{path}.{name}"), false).map(Some)
+        zone(study, (name, ZoneKind::Eccentricity), found, given, &format!("{path}.{name}"), false).map(Some)
     };
     let (Some(upper), Some(frame)) = (segment("position")?, frame) else {
         let instead = "write the zone of the pattern as one body: position = 0.5".to_owned();
@@ -124,7 +124,7 @@ fn write(pattern: &Pattern<'_, '_>, all: &[&ZonedFeature<'_>], own: &mut [Torsor
         true => "position: the body evenly in the zone, its turn shares it",
         false => "position: 3 sigma = half the zone in x and y, the turn at the farthest axis over sqrt 2",
     };
-    let owner = Owner { note: note.to_owned(), ..pattern.owner.clone() };
+    let owner = Owner { note: note.to_owned(), zone: Some(upper.label(name)), ..pattern.owner.clone() };
     let (at_name, turn_name) = (format!("{name}.at"), format!("{name}.tilt"));
     let shared = upper.uniform && upper.width != Extent::Number(0.0);
     let spread = if shared { &[][..] } else { &upper.spread[..] };
@@ -150,7 +150,7 @@ fn write(pattern: &Pattern<'_, '_>, all: &[&ZonedFeature<'_>], own: &mut [Torsor
         if let Some(zone) = &pattern.lower {
             let note = "position within the pattern: 3 sigma = half the zone in x and y of the middle";
             let note = if zone.uniform { "position within the pattern: the middle evenly in the zone" } else { note };
-            let owner = Owner { note: note.to_owned(), ..feature.owner.clone() };
+            let owner = Owner { note: note.to_owned(), zone: Some(zone.label(name)), ..feature.owner.clone() };
             let half = lines.scaled(&zone.width, 0.5);
             let within = lines.circle(&owner, &format!("{}.at", feature.full()), &half, LineUnit::Length, &zone.spread);
             for (axis, text) in within.into_iter().enumerate() {

@@ -30,9 +30,14 @@ pub(super) struct DatumFacts<'a> {
     pub(super) material: Option<(&'static str, String)>,
 }
 
-/// Words of the law, for comments.
-fn words(zone: &ZoneEntry<'_>, uniform: &str, normal: &str) -> String {
-    format!("{}: {}", zone.key, if zone.uniform { uniform } else { normal })
+/// Words of the law of a zone, for comments.
+struct Words<'a> {
+    zone: &'a ZoneEntry<'a>,
+    text: String,
+}
+
+fn words<'a>(zone: &'a ZoneEntry<'a>, uniform: &str, normal: &str) -> Words<'a> {
+    Words { zone, text: format!("{}: {}", zone.key, if zone.uniform { uniform } else { normal }) }
 }
 
 /// Deviation of a feature within its zones, with the lines that it needs.
@@ -41,7 +46,7 @@ pub(super) fn torsor(feature: &ZonedFeature<'_>, facts: &DatumFacts<'_>, lines: 
     let orientation = feature.zone(&[ZoneKind::Orientation]);
     if let (Some(place), Some(orientation)) = (place, orientation)
         && let (Some(wide), Some(tight)) = (place.width.number(), orientation.width.number())
-        && tight >= wide
+        && tight > wide
         && place.table.is_none_or(|table| table.get("at").is_none())
     {
         let (orientation_key, location) = (orientation.key, place.key);
@@ -68,8 +73,9 @@ pub(super) fn torsor(feature: &ZonedFeature<'_>, facts: &DatumFacts<'_>, lines: 
     }
 }
 
-fn noted(feature: &ZonedFeature<'_>, note: String) -> Owner {
-    Owner { note, ..feature.owner.clone() }
+fn noted(feature: &ZonedFeature<'_>, words: Words<'_>) -> Owner {
+    let zone = Some(words.zone.label(&feature.full()));
+    Owner { note: words.text, zone, ..feature.owner.clone() }
 }
 
 /// Checks that a bonus belongs to a feature with a size.
@@ -146,9 +152,8 @@ fn axis(
                 [x, y] => format!("hypot({x}, {y})"),
                 _ => format!("abs({})", parts.join(" + ")),
             };
-            let left = format!("({} - {}/2*{tilt})", lines.length(&half), lines.length(length));
-            let both =
-                lines.circle(&owner, &format!("{name}.at"), &Extent::Formula(left), LineUnit::Length, &zone.spread);
+            let used = format!("{}/2*{tilt}", lines.length(length));
+            let both = lines.circle_left(&owner, &format!("{name}.at"), (&half, &used), &zone.spread);
             found.shift = across(both);
         }
         (None, Some(length)) => {
@@ -203,6 +208,10 @@ fn in_circle(
         return Err(at(&feature.owner, zone.key, &zone.span, missing));
     };
     let mut frame = vec![(key(owner, "zone"), number(owner, width)), (key(owner, "at"), modifier.clone())];
+    if lines.width(owner).is_some() {
+        let name = owner.zone.as_ref().map_or_else(String::new, |zone| zone.name.clone());
+        frame.push((key(owner, "width"), text(owner, name)));
+    }
     let given = ["hole", "pin"].into_iter().find_map(|kind| Some((kind, table.get(kind)?.clone())));
     match (given, &facts.material) {
         (Some((kind, tree)), _) => frame.push((key(owner, kind), tree)),
@@ -287,9 +296,8 @@ fn plane(
     if orientation.is_some() && zone.uniform {
         let owner = noted(feature, words(zone, "evenly in what the tilt leaves", ""));
         let used = used_by_tilt(feature, &found, lines);
-        let left = Extent::Formula(format!("({} - {used})", lines.length(&half)));
-        let offset = lines.band(&owner, &name, &left, LineUnit::Length, &zone.spread);
-        found.shift = [None, None, Some(offset.text)];
+        let offset = lines.band_left(&owner, &name, (&half, &used), &zone.spread);
+        found.shift = [None, None, Some(offset)];
         return Ok(found);
     }
     let law = match &feature.extent {

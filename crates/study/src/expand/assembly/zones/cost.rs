@@ -1,0 +1,202 @@
+//! Costs of zones: a line of `[costs]` with the name of a zone becomes one of the dimensions that the zone makes.
+//!
+//! `"housing.bore.position"` names a zone, and `"housing.bore"` the only zone of a feature.
+
+use std::ops::Range;
+
+use super::entry::{ZONES, ZoneKind, ZonedFeature};
+use super::lines::{Lines, MadeZone};
+use crate::error::{Fault, Faults, StudyFault, fault};
+use crate::expand::{Tree, Value, ZonePlace};
+use crate::tree::Key;
+use crate::zone_fault::ZoneFault;
+
+/// A line of `[costs]` for a zone.
+pub(super) struct ZoneCost {
+    /// Name of the line, as written.
+    line: String,
+    span: Range<usize>,
+    /// Full name of the zone.
+    pub(super) zone: String,
+    place: ZonePlace,
+}
+
+/// A feature or a pattern with the keys of its zones, and the path of its entry.
+struct Zoned {
+    name: String,
+    keys: Vec<&'static str>,
+    path: Vec<String>,
+}
+
+/// Lines of `[costs]` that name zones.
+pub(super) fn costs(study: &Tree, features: &[ZonedFeature<'_>]) -> Result<Vec<ZoneCost>, Faults> {
+    let zoned = zoned(study, features);
+    let is_dimension = |name: &str| study.get("dimensions").is_some_and(|all| all.get(name).is_some());
+    let (mut found, mut faults) = (Vec::<ZoneCost>::new(), Faults::default());
+    for (key, _) in study.get("costs").map_or(&[][..], Tree::entries) {
+        if is_dimension(&key.name) {
+            continue;
+        }
+        let Some(one) = faults.take(named(key, &zoned)).flatten() else { continue };
+        if let Some(other) = found.iter().find(|other| other.zone == one.zone) {
+            let taken = ZoneFault::TwoCosts { zone: one.zone.clone(), other: other.line.clone() };
+            faults.0.push(refusal(key.span.clone(), format!("costs.{}", key.name), taken));
+            continue;
+        }
+        found.push(one);
+    }
+    faults.none()?;
+    Ok(found)
+}
+
+fn refusal(span: Range<usize>, key: String, found: ZoneFault) -> Fault {
+    fault(span, key, StudyFault::Zone(found))
+}
+
+/// Features and patterns with their zones.
+fn zoned(study: &Tree, features: &[ZonedFeature<'_>]) -> Vec<Zoned> {
+    let of_feature = |feature: &ZonedFeature<'_>| Zoned {
+        name: feature.full(),
+        keys: feature.zones.iter().map(|zone| zone.key).collect(),
+        path: vec![feature.part.to_owned(), feature.name.to_owned()],
+    };
+    let mut found: Vec<Zoned> = features.iter().map(of_feature).collect();
+    for (part, tree) in study.get("parts").map_or(&[][..], Tree::entries) {
+        for (pattern, tree) in tree.get("patterns").map_or(&[][..], Tree::entries) {
+            found.push(Zoned {
+                name: format!("{}.{}", part.name, pattern.name),
+                keys: ["position", "within"].into_iter().filter(|key| tree.get(key).is_some()).collect(),
+                path: vec![part.name.clone(), "patterns".to_owned(), pattern.name.clone()],
+            });
+        }
+    }
+    found
+}
+
+/// Zone that a line of `[costs]` names. Returns None if it names no feature.
+fn named(key: &Key, zoned: &[Zoned]) -> Result<Option<ZoneCost>, Fault> {
+    let refused = |found: ZoneFault| Err(refusal(key.span.clone(), format!("costs.{}", key.name), found));
+    let of = |zoned: &Zoned, zone: &str| {
+        let path = zoned.path.iter().cloned().chain([zone.to_owned()]).collect();
+        Ok(Some(ZoneCost {
+            line: key.name.clone(),
+            span: key.span.clone(),
+            zone: format!("{}.{zone}", zoned.name),
+            place: ZonePlace { cost: key.name.clone(), path },
+        }))
+    };
+    if let Some(one) = zoned.iter().find(|one| one.name == key.name) {
+        let feature = one.name.clone();
+        return match one.keys[..] {
+            [] => refused(ZoneFault::CostWithoutZone { feature }),
+            [zone] => of(one, zone),
+            _ => refused(ZoneFault::CostOfSeveral { feature, zones: one.keys.clone() }),
+        };
+    }
+    let split = key.name.rsplit_once('.');
+    let Some((one, zone)) = split.and_then(|(name, zone)| Some((zoned.iter().find(|one| one.name == name)?, zone)))
+    else {
+        return Ok(None);
+    };
+    if one.keys.contains(&zone) {
+        return of(one, zone);
+    }
+    // Other endings are those of the dimensions that a zone makes.
+    let is_zone = zone == "within" || ZONES.iter().any(|(known, ..)| *known == zone);
+    match is_zone {
+        true => refused(ZoneFault::CostOfMissing {
+            feature: one.name.clone(),
+            zone: zone.to_owned(),
+            zones: one.keys.clone(),
+        }),
+        false => Ok(None),
+    }
+}
+
+/// Writes the dimensions of every zone with a cost into its line of `[costs]`, and the zones that it refines.
+pub(super) fn write(
+    tree: &mut Tree,
+    costs: Vec<ZoneCost>,
+    features: &[ZonedFeature<'_>],
+    lines: &Lines,
+) -> Result<Vec<ZonePlace>, Faults> {
+    let mut faults = Faults::default();
+    let mut places = Vec::new();
+    let names: Vec<(String, String)> = costs.iter().map(|cost| (cost.zone.clone(), cost.line.clone())).collect();
+    for cost in costs {
+        let Some(made) = faults.take(made(&cost, lines)) else { continue };
+        let Some(entry) = tree.get_mut("costs").and_then(|costs| costs.get_mut(&cost.line)) else { continue };
+        let key = |name: &str| Key { span: cost.span.clone(), name: name.to_owned() };
+        let plain = |value: Value| Tree { span: cost.span.clone(), value };
+        let half = made.label.half.unwrap_or(1.0);
+        let mut of: Vec<(Key, Tree)> =
+            made.members.iter().map(|(name, band)| (key(name), plain(Value::Number(band / half)))).collect();
+        of.extend(made.width.iter().map(|name| (key(name), plain(Value::Number(2.0)))));
+        let refinement = faults.take(refined(entry, &cost, features, &names)).flatten();
+        let Some(keys) = entry.entries_mut() else { continue };
+        keys.extend(refinement.map(|(name, value)| (key(name), plain(value))));
+        keys.push((key("of"), plain(Value::Table(of))));
+        keys.extend(lines.length_unit().map(|unit| (key("unit"), plain(Value::Text(unit)))));
+        places.push(cost.place);
+    }
+    faults.none()?;
+    Ok(places)
+}
+
+/// Lines that the zone of a cost has made.
+fn made<'l>(cost: &ZoneCost, lines: &'l Lines) -> Result<&'l MadeZone, Fault> {
+    let zone = cost.zone.clone();
+    let refused = |found: ZoneFault| Err(refusal(cost.span.clone(), format!("costs.{}", cost.line), found));
+    match lines.zones.iter().find(|made| made.label.name == zone) {
+        None => refused(ZoneFault::CostOfIdle { zone }),
+        Some(made) if made.label.half.is_none() => refused(ZoneFault::CostOfFormula { zone }),
+        Some(made) if made.label.half == Some(0.0) => refused(ZoneFault::CostOfNothing { zone }),
+        Some(made) if made.is_uneven || made.members.is_empty() => refused(ZoneFault::CostOfUneven { zone }),
+        Some(made) => Ok(made),
+    }
+}
+
+/// Bound that keeps an orientation within the location of its feature, as a key of its cost. A location without a cost
+/// is a greatest half width of the orientation, and an orientation without one a least half width of the location.
+fn refined(
+    entry: &Tree,
+    cost: &ZoneCost,
+    features: &[ZonedFeature<'_>],
+    names: &[(String, String)],
+) -> Result<Option<(&'static str, Value)>, Fault> {
+    let Some((feature, zone)) = features.iter().find_map(|feature| {
+        let zone = feature.zones.iter().find(|zone| zone.label(&feature.full()).name == cost.zone)?;
+        Some((feature, zone))
+    }) else {
+        return Ok(None);
+    };
+    let location = [ZoneKind::Location, ZoneKind::Eccentricity];
+    let is_inner = zone.kind == ZoneKind::Orientation;
+    let is_outer = location.contains(&zone.kind);
+    let other = match (is_inner, is_outer) {
+        (true, _) => feature.zone(&location),
+        (_, true) => feature.zone(&[ZoneKind::Orientation]),
+        _ => None,
+    };
+    let Some(other) = other else { return Ok(None) };
+    let label = other.label(&feature.full());
+    if let Some((_, line)) = names.iter().find(|(zone, _)| *zone == label.name) {
+        return Ok(is_inner.then(|| ("within", Value::Text(line.clone()))));
+    }
+    // A zone whose width is a formula, or that a bonus widens, sets no bound.
+    let Some(bound) = label.half.filter(|_| other.table.is_none_or(|table| table.get("at").is_none())) else {
+        return Ok(None);
+    };
+    let key = if is_inner { "max" } else { "min" };
+    match entry.get(key).map(|given| (super::frame::number(given), given)) {
+        // Processes and tables have bounds of their own.
+        None if entry.get("model").is_some() || entry.get("formula").is_some() => Ok(Some((key, Value::Number(bound)))),
+        None => Ok(None),
+        Some((Some(given), tree)) if (is_inner && given > bound) || (!is_inner && given < bound) => {
+            let (inner, outer) = if is_inner { (zone.key, other.key) } else { (other.key, zone.key) };
+            let found = ZoneFault::CostBeyondRefinement { zone: cost.zone.clone(), key, given, inner, outer, bound };
+            Err(refusal(tree.span.clone(), format!("costs.{}.{key}", cost.line), found))
+        }
+        Some(_) => Ok(None),
+    }
+}

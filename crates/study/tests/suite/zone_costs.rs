@@ -1,0 +1,231 @@
+//! Costs of zones in space: allocations against Lagrange's conditions, the study written anew, and wrong costs.
+
+use sensitol::allocation::{Allocation, AllocationOptions, Status, allocate};
+use sensitol::analyze;
+use sensitol_study::Study;
+/// Relative difference.
+fn relative(a: f64, b: f64) -> f64 {
+    (a - b).abs() / b.abs()
+}
+
+/// Text of a block on a table, with a rod in its bore whose tip is 100 mm from the middle of the bore. Three sigma of the height of the tip are at
+/// most 0.3 mm.
+fn text(bore: &str, sizes: &str, costs: &str) -> String {
+    format!(
+        r#"
+[dimensions]
+t = {{ nominal = 30, tolerance = 0.1, unit = "mm" }}
+{sizes}
+[parts.table]
+top = {{ plane = [0, 0, 0], normal = "z" }}
+[parts.block]
+foot = {{ plane = [0, 0, 0], normal = "-z", x = "x" }}
+bore = {{ axis = [0, 0, "t"], along = "x", {bore} }} # reamed
+[parts.rod]
+at = [0, 0, 30]
+pin = {{ axis = [0, 0, 0], along = "x" }}
+tip = {{ point = [100, 0, 0] }}
+[joints]
+seat = {{ on = "table.top", against = "block.foot", takes = 3 }}
+fit = {{ hole = "block.bore", pin = "rod.pin", takes = 4 }}
+[characteristics]
+height = {{ of = "rod.tip", from = "table.top", unit = "mm", lower = 29.7, upper = 30.3, target_cpk = 1.0 }}
+[costs]
+{costs}
+"#
+    )
+}
+
+fn read(text: &str) -> Study {
+    Study::from_toml(text, "study.toml").unwrap()
+}
+
+fn allocated(study: &Study) -> Allocation {
+    allocate(&study.problem, &study.allocation_task(), &AllocationOptions::default()).unwrap()
+}
+
+/// Tolerances after, by the names that a report shows.
+fn tolerances(study: &Study, found: &Allocation) -> Vec<(String, f64)> {
+    let name = |d: usize| study.problem.dimensions()[d].name().to_owned();
+    let of = |row: &sensitol::allocation::Allocated| {
+        (row.zone.as_ref().map_or_else(|| name(row.dimension), |zone| zone.name.clone()), row.after)
+    };
+    found.tolerances.iter().map(of).collect()
+}
+
+fn sigma(study: &Study) -> f64 {
+    analyze(&study.problem, &study.options).unwrap().characteristics[0].moments.unwrap().sigma()
+}
+
+/// Least cost of `sum b/T` under `sum s^2 T^2 = 0.3^2`, by Lagrange's condition.
+fn lagrange(terms: &[(f64, f64)]) -> Vec<f64> {
+    let proportions: Vec<f64> = terms.iter().map(|(b, s)| (b / (s * s)).cbrt()).collect();
+    let used: f64 = proportions.iter().zip(terms).map(|(t, (_, s))| (s * t).powi(2)).sum();
+    proportions.iter().map(|t| 0.3 / used.sqrt() * t).collect()
+}
+
+/// Both ends of the bore are within a circle of diameter 2a. The tip feels them by 4.5 and 3.5, so that s is the root of 32.5. The derivatives of
+/// the solver are exact, and the rounds end at a relative change of 1e-7.
+#[test]
+fn a_zone_with_a_length_is_one_tolerance() {
+    let costs = "t = { model = \"reciprocal\", b = 0.1, min = 0.001, max = 1 }\n\"block.bore.position\" = { model = \"reciprocal\", b = 0.4, min = 0.001, max = 1 }";
+    let study = read(&text("length = 25, position = 0.1", "", costs));
+    let found = allocated(&study);
+    let expected = lagrange(&[(0.1, 1.0), (0.4, 32.5f64.sqrt())]);
+    let rows = tolerances(&study, &found);
+    assert_eq!(rows.iter().map(|row| row.0.as_str()).collect::<Vec<_>>(), ["t", "block.bore.position"]);
+    for ((name, after), expected) in rows.iter().zip(&expected) {
+        assert!(relative(*after, *expected) < 1e-5, "{name}: {after}, {expected}");
+    }
+    let before = found.tolerances[1].before;
+    assert!(relative(before, 0.05) < 1e-12, "half the zone: {before}");
+    let cost = 0.1 / expected[0] + 0.4 / expected[1];
+    assert!(relative(found.cost_after.unwrap(), cost) < 1e-5);
+    // The expanded study has the same answer.
+    let plain = read(&study.expanded);
+    let of_plain = allocated(&plain);
+    assert_eq!(tolerances(&plain, &of_plain), rows);
+}
+
+/// The new width stands in the feature, with its comment, and an analysis gives the sigma of the allocation. Six digits are written.
+#[test]
+fn the_new_width_stands_in_the_feature() {
+    let costs = "t = { model = \"reciprocal\", b = 0.1, min = 0.001, max = 1 }\n\"block.bore\" = { model = \"reciprocal\", b = 0.4, min = 0.001, max = 1 }";
+    for (bore, with) in [
+        ("length = 25, position = 0.1", "length = 25, position = "),
+        ("length = 25, position = { zone = 0.1, distribution = \"uniform\" }", "length = 25, position = { zone = "),
+    ] {
+        let study = read(&text(bore, "", costs));
+        let found = allocated(&study);
+        let anew = study.rewritten(&found.problem).unwrap();
+        assert!(
+            anew.text.contains(with) && anew.text.contains("# reamed") && !anew.text.contains(bore),
+            "{}",
+            anew.text
+        );
+        assert!(anew.entries.contains("[parts.block]\nbore = { axis"), "{}", anew.entries);
+        let again = read(&anew.text);
+        let [written, wanted] =
+            [sigma(&again), found.after.as_ref().unwrap().characteristics[0].moments.unwrap().sigma()];
+        assert!(relative(written, wanted) < 2e-5 && written <= wanted, "{written}, {wanted}");
+        assert!(written > 0.0999, "the limits are used: {written}");
+    }
+}
+
+/// The bonus of a bore follows its size. With b the bonus, of mean m and sigma s, the place has the variance `((z + m)^2 + s^2)/36`. The least cost
+/// is found by a search over z alone. The relative tolerance is that of slopes by differences, 2e-5, times the flatness of the optimum.
+#[test]
+fn a_bonus_keeps_its_size_when_the_zone_changes() {
+    let costs = "t = { model = \"reciprocal\", b = 0.1, min = 0.001, max = 1 }\n\"block.bore\" = { model = \"reciprocal\", b = 0.02, min = 0.001, max = 1 }";
+    let size = "D = { limits = [10.0, 10.2], unit = \"mm\" }";
+    let study = read(&text("position = { zone = 0.1, hole = \"D\", at = \"MMC\" }", size, costs));
+    let found = allocated(&study);
+    let (m, s) = (0.1, 0.1 / 3.0);
+    let thickness = |z: f64| (0.09 - ((z + m) * (z + m) + s * s) / 4.0).sqrt();
+    let cost = |z: f64| 0.1 / thickness(z) + 0.02 / (0.5 * z);
+    let (mut low, mut high) = (0.002, 0.49);
+    for _ in 0..200 {
+        let [a, b] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+        if cost(a) < cost(b) { high = b } else { low = a }
+    }
+    let rows = tolerances(&study, &found);
+    assert!(
+        relative(found.cost_after.unwrap(), cost(low)) < 1e-6,
+        "{:?}, {} instead of {}",
+        rows,
+        found.cost_after.unwrap(),
+        cost(low)
+    );
+    assert!(relative(rows[1].1, 0.5 * low) < 2e-3 && relative(rows[0].1, thickness(low)) < 2e-3, "{rows:?} for {low}");
+    let again = read(&study.rewritten(&found.problem).unwrap().text);
+    assert!(relative(sigma(&again), 0.1) < 2e-5, "{}", sigma(&again));
+    let plain = read(&study.expanded);
+    assert!(relative(sigma(&plain), sigma(&study)) < 1e-12);
+}
+
+/// Middle and tilt are independent: the tip feels half the position by 1 and half the perpendicularity by 8. Alone the perpendicularity would be
+/// the wider of the two, so that both are equal.
+#[test]
+fn an_orientation_never_exceeds_its_location() {
+    let costs = |tight: f64| {
+        format!(
+            "\"block.bore.position\" = {{ model = \"reciprocal\", b = 0.001, min = 0.001, max = 1 }}\n\"block.bore.perpendicularity\" = {{ model = \"reciprocal\", b = {tight}, min = 0.001, max = 1 }}"
+        )
+    };
+    let bore = "length = 25, position = 0.1, perpendicularity = 0.02";
+    let rest = 0.09 - 0.01f64;
+    for (dear, is_tied) in [(10.0, true), (0.01, false)] {
+        let study = read(&text(bore, "", &costs(dear)));
+        let found = allocated(&study);
+        let rows = tolerances(&study, &found);
+        let alone: Vec<f64> = lagrange(&[(0.001, 1.0), (dear, 8.0)]).iter().map(|t| t * rest.sqrt() / 0.3).collect();
+        assert_eq!(alone[1] > alone[0], is_tied);
+        let both = (rest / 65.0).sqrt();
+        let expected = if is_tied { vec![both, both] } else { alone };
+        for ((name, after), expected) in rows.iter().zip(&expected) {
+            assert!(relative(*after, *expected) < 1e-5, "{name}: {after}, {expected}");
+        }
+        let costs: f64 = 0.001 / expected[0] + dear / expected[1];
+        assert!(relative(found.cost_after.unwrap(), costs) < 1e-5);
+        assert!(relative(found.cost_before.unwrap(), 0.001 / 0.05 + dear / 0.01) < 1e-9);
+        assert!(!matches!(found.status, Status::Infeasible | Status::NoFeasiblePointFound), "{:?}", found.status);
+        let again = read(&study.rewritten(&found.problem).unwrap().text);
+        assert!(relative(sigma(&again), 0.1) < 2e-5);
+    }
+    // A location without a cost bounds its orientation.
+    let study = read(&text(bore, "", "\"block.bore.perpendicularity\" = { model = \"reciprocal\", b = 1.0 }"));
+    let rows = tolerances(&study, &allocated(&study));
+    assert!(rows[0].1 <= 0.05 * (1.0 + 1e-9), "{rows:?}");
+}
+
+/// A uniform middle has what the tilt leaves of its zone, at any width.
+#[test]
+fn a_refined_uniform_zone_changes_with_its_width() {
+    let bore = "length = 25, position = 0.1, perpendicularity = 0.02, distribution = \"uniform\"";
+    let costs = "\"block.bore.position\" = { model = \"reciprocal\", b = 0.1 }\n\"block.bore.perpendicularity\" = { model = \"reciprocal\", b = 0.1 }";
+    let [plain, priced] = [read(&text(bore, "", "")), read(&text(bore, "", costs))];
+    assert!(relative(sigma(&plain), sigma(&priced)) < 1e-12);
+    let found = allocated(&priced);
+    let again = read(&priced.rewritten(&found.problem).unwrap().text);
+    assert!(relative(sigma(&again), 0.1) < 5e-5, "{}", sigma(&again));
+}
+
+#[test]
+fn wrong_costs_name_the_line_and_the_remedy() {
+    let zone = |name: &str| format!("\"{name}\" = {{ model = \"reciprocal\", b = 0.1 }}");
+    let both = "length = 25, position = 0.1, perpendicularity = 0.02";
+    let cases = [
+        (both, zone("block.bore"), "write", "name one of them: \"block.bore.position\""),
+        ("length = 25", zone("block.bore"), "has a cost and no zone", "give `block.bore` a zone"),
+        ("position = 0.1", zone("block.bore.runout"), "has no `runout`", "write \"block.bore.position\""),
+        ("roundness = 0.1", zone("block.bore"), "moves nothing", "leave the cost out"),
+        ("position = 0", zone("block.bore"), "the width 0", "write the present width"),
+        ("position = \"w\"", zone("block.bore"), "its width is a formula", "give the cost to the dimension"),
+        (
+            "position = 0.1",
+            zone("block.bore") + "\n" + &zone("block.bore.position"),
+            "has two costs",
+            "keep one of them",
+        ),
+        (
+            both,
+            "\"block.bore.perpendicularity\" = { model = \"reciprocal\", b = 0.1, max = 0.06 }".to_owned(),
+            "wider than `position`",
+            "write max = 0.05",
+        ),
+        (
+            both,
+            "\"block.bore.position\" = { model = \"reciprocal\", b = 0.1, min = 0.005 }".to_owned(),
+            "wider than `position`",
+            "write min = 0.01",
+        ),
+        ("position = 0.1", zone("block.hole"), "block.hole", "block.bore"),
+    ];
+    for (bore, costs, what, remedy) in cases {
+        let text = text(bore, "w = { nominal = 0.1, tolerance = 0.01, unit = \"mm\" }", &costs);
+        let text = if bore.contains("\"w\"") { text } else { text.replace("w = { nominal", "# { nominal") };
+        let error = Study::from_toml(&text, "study.toml").unwrap_err().to_string();
+        assert!(error.contains(remedy) && (what == "write" || error.contains(what)), "{costs}\n{error}");
+        assert!(error.contains("costs."), "{error}");
+    }
+}
