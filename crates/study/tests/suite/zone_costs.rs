@@ -190,6 +190,49 @@ fn a_refined_uniform_zone_changes_with_its_width() {
     assert!(relative(sigma(&again), 0.1) < 5e-5, "{}", sigma(&again));
 }
 
+/// Variance of the offset of the housing by hand, for half bands of both bores and half zones of bores and motor. The shaft is at 50 mm of 80
+/// between the bores. A float of clearance c has the variance c^2/4 in one direction, and f7 leaves -20 to -41 um.
+fn of_housing([bore1, bore2, first, second, motor]: [f64; 5]) -> f64 {
+    let float = |bore: f64| {
+        let (mean, spread) = (0.5 * (bore + 0.0305), 0.5 * (bore / 3.0).hypot(0.0105 / 3.0));
+        (mean * mean + spread * spread) / 4.0
+    };
+    // The mean bonus is half of the tolerance of the bore.
+    let widened = ((2.0 * second + bore2).powi(2) + (bore2 / 3.0).powi(2)) / 36.0;
+    let [near, far] = [50.0 / 80.0, 30.0 / 80.0].map(|weight: f64| weight * weight);
+    far * (first * first / 9.0 + float(bore1)) + near * (widened + float(bore2)) + motor * motor / 9.0
+}
+
+/// The example keeps Lagrange's condition by hand: the saving over the variance is the same for all tolerances within their bounds. Slopes by zones
+/// with a bonus come from differences, with a truncation of 2e-5.
+#[test]
+fn the_housing_meets_lagranges_condition() {
+    let study = Study::read(&sensitol_testing::repository("examples/housing-allocation/study.toml")).unwrap();
+    let found = allocated(&study);
+    let rows = tolerances(&study, &found);
+    let names = ["D1", "D2", "housing.bore1", "housing.bore2", "housing.motor"];
+    let after = names.map(|name| rows.iter().find(|row| row.0 == name).unwrap().1);
+    let [before, best] = [&found.before, found.after.as_ref().unwrap()]
+        .map(|analysis| analysis.characteristics[0].moments.unwrap().sigma());
+    // The bores turn the shaft by less than 1e-3, so that products are below 1e-6 of the offset.
+    assert!(relative(before, of_housing([0.0105, 0.0105, 0.05, 0.05, 0.05]).sqrt()) < 1e-5);
+    assert!(relative(best, of_housing(after).sqrt()) < 1e-5);
+    let multiplier = |at: usize, b: f64| {
+        let moved = |by: f64| {
+            let mut all = after;
+            all[at] += by;
+            of_housing(all)
+        };
+        b / (after[at] * after[at]) / ((moved(1e-6) - moved(-1e-6)) / 2e-6)
+    };
+    let [own, rest @ ..] = [(4, 0.15), (1, 0.02), (2, 0.1), (3, 0.1)].map(|(at, b)| multiplier(at, b));
+    for other in rest {
+        assert!(relative(other, own) < 1e-4, "{own} {rest:?} at {after:?}");
+    }
+    // The first bore would open farther: it is at its greatest tolerance.
+    assert!(after[0] == 0.02 && multiplier(0, 0.02) > own);
+}
+
 #[test]
 fn wrong_costs_name_the_line_and_the_remedy() {
     let zone = |name: &str| format!("\"{name}\" = {{ model = \"reciprocal\", b = 0.1 }}");
