@@ -234,7 +234,7 @@ fn differences(
 impl PredictedFigures {
     fn of(analysis: &CharacteristicAnalysis, variance: Option<&PredictedVariance>) -> Option<Self> {
         let moments = analysis.moments?;
-        let capability = analysis.capability;
+        let capability = analysis.distribution.capability;
         let rejects = capability.map_or([None; 2], |of| [of.below, of.above]);
         let yield_interval = match variance {
             Some(variance) => predicted_yield_interval(rejects, variance),

@@ -47,7 +47,7 @@ fn check(name: &str, sample: &Simulation, analysis: &Analysis) {
         let (moments, errors) = (one.moments.unwrap(), one.error_estimate.as_ref().unwrap());
         near(&what, (moments.mean(), errors.mean.unwrap()), exact, "mean");
         near(&what, (moments.sigma(), errors.sigma.unwrap()), exact, "sigma");
-        if let Some(share) = one.capability.and_then(|of| of.yield_()) {
+        if let Some(share) = one.distribution.capability.and_then(|of| of.yield_()) {
             near(&what, (share, errors.yield_.unwrap()), exact, "yield");
         }
     }
@@ -231,7 +231,7 @@ fn yields_of_those_that_keep_another_limit() {
     let [a, _, c] = &analysis.characteristics[..] else { panic!() };
     let [simulated, _, other] = &sample.characteristics[..] else { panic!() };
     for (found, key) in
-        [(a.conditional.as_ref(), "a"), (simulated.conditional.as_ref(), "a"), (other.conditional.as_ref(), "c")]
+        [(a.distribution.conditional.as_ref(), "a"), (simulated.conditional.as_ref(), "a"), (other.conditional.as_ref(), "c")]
     {
         let found = found.unwrap();
         let [low, high] = found.interval.unwrap();
@@ -241,12 +241,12 @@ fn yields_of_those_that_keep_another_limit() {
         assert!((found.value - number(key)).abs() <= reach && reach < 0.02, "{key}: {found:?}");
     }
     // Different independent dimensions: the own yield, by the normal distribution.
-    let own = c.conditional.as_ref().unwrap();
+    let own = c.distribution.conditional.as_ref().unwrap();
     assert!(
-        (own.value - number("c")).abs() < 1e-12 && (c.capability.unwrap().yield_().unwrap() - own.value).abs() < 1e-15
+        (own.value - number("c")).abs() < 1e-12 && (c.distribution.capability.unwrap().yield_().unwrap() - own.value).abs() < 1e-15
     );
     // The yield of all, 84 %, misses the target of 92 %, which the yield of those that count meets.
-    assert!((a.capability.unwrap().yield_().unwrap() - number("plain")).abs() < 1e-9);
+    assert!((a.distribution.capability.unwrap().yield_().unwrap() - number("plain")).abs() < 1e-9);
     assert_eq!((a.requirements()[0].verdict, simulated.requirements()[0].verdict), (Verdict::Met, Verdict::Met));
 }
 

@@ -99,6 +99,7 @@ impl Failure {
             Self::Problem(_) => "problem",
             Self::Method(_) => "method",
             Self::Simulation(_) => "simulation",
+            Self::Sharding(_) | Self::Shard { .. } => "shard",
             Self::Rare(_) => "rare-events",
             Self::Compare(_) => "comparison",
             Self::Sweep(_) => "sweep",
@@ -146,6 +147,7 @@ impl Failure {
         match self {
             Self::Points { path, .. }
             | Self::Import { path, .. }
+            | Self::Shard { path, .. }
             | Self::NoTable { path, .. }
             | Self::Unwritable { path, .. }
             | Self::WrongPage { path, .. }

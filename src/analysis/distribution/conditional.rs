@@ -25,7 +25,7 @@ pub(in crate::analysis) fn condition(
 ) {
     for [c, given] in conditions(problem) {
         let found = of_pair(problem, options, left, characteristics, laws, [c, given]);
-        characteristics[c].conditional = found;
+        characteristics[c].distribution.conditional = found;
     }
 }
 
@@ -37,9 +37,9 @@ fn of_pair(
     laws: &[Option<SurfaceLaw>],
     [c, given]: [usize; 2],
 ) -> Option<ConditionalYield> {
-    let rejected = |c: usize| characteristics[c].capability.and_then(|of| of.rejected());
+    let rejected = |c: usize| characteristics[c].distribution.capability.and_then(|of| of.rejected());
     let [own, other] = [rejected(c)?, rejected(given)?];
-    let measured = |c: usize, rejected: f64| (rejected, characteristics[c].sampling.as_ref().map(|of| of.rejected));
+    let measured = |c: usize, rejected: f64| (rejected, characteristics[c].evidence.sampling.as_ref().map(|of| of.rejected));
     let name = characteristics[given].characteristic.name();
     if are_independent(problem, [c, given]) {
         let interval = characteristics[c].yield_interval()?;

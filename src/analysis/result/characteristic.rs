@@ -168,7 +168,8 @@ impl CharacteristicAnalysis {
 
     /// Leaves out the figures of a linear model, which has none where values are chosen from stock.
     pub(crate) fn leave_out_linear(&mut self) {
-        (self.worst_case, self.rss, self.inflated_rss, self.mean_shift_rss) = (None, None, None, None);
+        self.range.worst_case = None;
+        (self.linear.rss, self.linear.inflated_rss, self.linear.mean_shift_rss) = (None, None, None);
     }
 
     /// Judges a requirement, which need not be the characteristic's own.

@@ -70,7 +70,7 @@ impl Report {
             let known = one.rejects().yield_text().filter(|text| text != UNKNOWN_YIELD);
             line = line.and(format!(" {}", known.as_deref().unwrap_or("yield unknown")));
             if let Some(given) = one.characteristic.given() {
-                let of_those = one.conditional.as_ref().map_or("unknown".to_owned(), conditional_yield);
+                let of_those = one.distribution.conditional.as_ref().map_or("unknown".to_owned(), conditional_yield);
                 line = line.and(format!(", given {given} {of_those}"));
             }
             if let Some(target) = one.target() {
