@@ -33,6 +33,7 @@ impl StudyFault {
             Self::Conditions(_) => "conditions",
             Self::Spatial(_) => "spatial",
             Self::Zone(_) => "zone",
+            Self::Compensator(_) => "compensator",
             Self::Formula(_) => "formula",
             Self::GroupName { .. } => "group-name",
             Self::ReservedName { .. } => "reserved-name",
