@@ -100,6 +100,7 @@ impl Failure {
             Self::Method(_) => "method",
             Self::Simulation(_) => "simulation",
             Self::Sharding(_) | Self::Shard { .. } => "shard",
+            Self::Lot(_) => "lot",
             Self::Rare(_) => "rare-events",
             Self::Compare(_) => "comparison",
             Self::Sweep(_) => "sweep",
