@@ -11,7 +11,7 @@ const INTRODUCTION: &str = "# JSON reports\n\n\
     `--json` prints one object, or a list where a command says so. This page is made from the JSON Schema that `sensitol schema --report` prints.\n\n\
     - Numbers have all their digits. An unknown value is `null`, never 0; no key is left out.\n\
     - `schema` is the version of the shape. Keys are added without a new version; a key that changes its meaning or is removed raises it.\n\
-    - Several studies in one call give a list: each report has the key `study`, or it is `{ \"study\": .., \"error\": .., \"errors\": [..] }`.\n\
+    - Several studies in one call give a list: each report has the key `study`, or it is `{ \"study\": .., \"error\": .., \"errors\": [{ .. }] }`.\n\
     - An error gives the object [errors](#errors) on stdout, and its text on stderr. `check` gives a report of a study with errors too.\n\
     - Exit codes are those of the text report: [commands](commands.md).\n\n";
 
