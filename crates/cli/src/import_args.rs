@@ -1,10 +1,12 @@
 //! Options of `sensitol import`.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 use clap::Args;
 
 use crate::failure::Failure;
+use crate::new_study::with_schema;
 use crate::output::Destination;
 use crate::shared_args::OUTPUT;
 use crate::table::TableArgs;
@@ -53,6 +55,11 @@ pub(crate) struct ImportArgs {
 }
 
 impl ImportArgs {
+    /// Returns the text of a new study. A file names its schema, and text on stdout has no folder for one.
+    pub(crate) fn study_text<'t>(&self, text: &'t str) -> Cow<'t, str> {
+        if self.output.is_some() { Cow::Owned(with_schema(text)) } else { Cow::Borrowed(text) }
+    }
+
     /// Destination of a new study. An existing file is refused.
     pub(crate) fn destination(&self) -> Result<Destination, Failure> {
         match &self.output {

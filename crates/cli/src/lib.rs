@@ -14,6 +14,7 @@ mod import_args;
 mod init_args;
 mod interrupt;
 mod lot_args;
+mod new_study;
 mod output;
 mod own_file;
 mod page_args;

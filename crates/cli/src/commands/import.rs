@@ -1,10 +1,8 @@
 //! `sensitol import`: a stack-up table, or the parts of a STEP file, as a study.
 
-use std::borrow::Cow;
 use std::path::Path;
 
 use crate::commands::import_step;
-use crate::commands::init::with_schema;
 use crate::failure::{Exit, Failure};
 use crate::import_args::ImportArgs;
 use crate::output::{Destination, Look};
@@ -28,16 +26,11 @@ pub(crate) fn run(asked: &ImportArgs, look: Look) -> Result<Exit, Failure> {
     let table = study_of_bytes(&asked.table, bytes, &asked.meaning, &asked.name)?;
     // The study is parsed here, so that errors appear at the import and not at the analysis.
     let name = asked.output.as_deref().unwrap_or(Path::new("imported study")).display().to_string();
-    let text = written(asked, &table.text);
+    let text = asked.study_text(&table.text);
     Study::from_toml(&text, &name)?;
     destination.write(&text)?;
     look.note(&table.summary, &table.notes);
     Ok(Exit::Done)
-}
-
-/// Returns the text of a new study. A file names its schema, and text on stdout has no folder for one.
-pub(crate) fn written<'t>(asked: &ImportArgs, text: &'t str) -> Cow<'t, str> {
-    if asked.output.is_some() { Cow::Owned(with_schema(text)) } else { Cow::Borrowed(text) }
 }
 
 /// Writes a study of measured values, with its warnings of blanks and outliers.
@@ -52,7 +45,7 @@ fn of_measured(asked: &ImportArgs, destination: Destination, look: Look) -> Resu
     };
     let table = measured_of(&asked.table, &file, &asked.meaning, &asked.name, asked.formula.as_deref())?;
     let name = asked.output.as_deref().unwrap_or(Path::new("imported study")).display().to_string();
-    let written = written(asked, &table.text);
+    let written = asked.study_text(&table.text);
     let text = StudyText::toml(name, &*written);
     let study = Study::from_text(text.in_folder(of_table.as_deref().unwrap_or(Path::new("."))))?;
     destination.write(&written)?;

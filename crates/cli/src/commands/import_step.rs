@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use crate::commands::import::written;
 use crate::failure::{Exit, Failure};
 use crate::import_args::{DEFAULT_NAME, ImportArgs};
 use crate::output::Destination;
@@ -54,7 +53,7 @@ pub(crate) fn run(asked: &ImportArgs, bytes: &[u8]) -> Result<Exit, Failure> {
         None => (asked.destination()?, step_study(bytes, &request).map_err(refused)?),
     };
     let says = asked.output.is_some() || asked.into.is_some();
-    destination.write(&written(asked, &imported.text))?;
+    destination.write(&asked.study_text(&imported.text))?;
     if says {
         let parts = imported.parts.iter().map(|part| format!("[parts.{part}]")).collect::<Vec<_>>().join(", ");
         Destination::Stdout.write(&format!("{parts}\n{}\n", imported.summary))?;

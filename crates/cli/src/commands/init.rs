@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use crate::args::InitArgs;
 use crate::commands::models::known;
 use crate::failure::{Exit, Failure};
+use crate::new_study::{shell, with_schema};
 use crate::output::Destination;
 use sensitol_models::{Model, ModelInput};
 use sensitol_report::document::number::plain;
+use sensitol_study::Format;
 use sensitol_study::write::{inline, pair, quoted};
-use sensitol_study::{Format, SCHEMA_FILE};
 
 /// Tolerance of the inputs of a built-in model, relative to their nominal value.
 const TOLERANCE: &str = "1%";
@@ -126,24 +127,6 @@ pub(crate) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
     let said = format!("written: {}\nnext: {}\n", path.display(), commands.join("\n      "));
     Destination::Stdout.write(&said)?;
     Ok(Exit::Done)
-}
-
-/// Adds the lines that name the schema to the text of a new study in TOML.
-pub(crate) fn with_schema(text: &str) -> String {
-    format!(
-        "#:schema ./{SCHEMA_FILE}\n# Editors complete and check keys by that file: sensitol schema -o {SCHEMA_FILE}\n{text}"
-    )
-}
-
-/// Quotes a path for a shell.
-pub(crate) fn shell(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = |c: char| c.is_alphanumeric() || "_-./:+,@%".contains(c) || cfg!(windows) && c == '\\';
-    match text.chars().all(plain) {
-        true => text,
-        false if cfg!(windows) => format!("\"{text}\""),
-        false => format!("'{}'", text.replace('\'', "'\\''")),
-    }
 }
 
 /// Returns the path of the study: `gap` and `gap.toml` both mean gap.toml.

@@ -8,8 +8,8 @@ use clap::{Args, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::commands::init::shell;
 use crate::failure::{Exit, Failure};
+use crate::new_study::shell;
 use crate::output::{Destination, TEMPORARY, json};
 use sensitol_numeric::names::{first_of, nearest};
 
