@@ -82,13 +82,14 @@ pub(super) fn extremes(
             searches[index].1.observe(places[place], value);
         }
     }
+    // The searches are in the order of their rows.
+    let mut ordered = searches.iter().peekable();
     for row in 0..rows {
         let spread = values
             .iter()
             .map(|step| step[row])
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
-        found.places[row] = None;
-        for (_, search) in searches.iter().filter(|(of, _)| *of == row) {
+        while let Some((_, search)) = ordered.next_if(|(of, _)| *of == row) {
             let (at, value) = search.best();
             found.places[row] = Some(better(found.places[row], LeastPlace { at, value, alone: true }, spread, motion));
         }

@@ -21,7 +21,7 @@ const STEP_ROUNDING: f64 = 1e-6;
 /// Numbers of steps of a motion.
 const STEPS: std::ops::RangeInclusive<u64> = 4..=10_000;
 
-/// Extreme that a characteristic is, if it is one.
+/// Motion and end of a characteristic that is an extreme. Returns None for any other.
 pub(crate) fn extreme(entry: &CharacteristicEntry) -> Option<(&Spanned<MotionEntry>, MotionEnd)> {
     let minimum = entry.minimum.as_ref().map(|motion| (motion, MotionEnd::Minimum));
     minimum.or(entry.maximum.as_ref().map(|motion| (motion, MotionEnd::Maximum)))
