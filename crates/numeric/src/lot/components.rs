@@ -52,7 +52,7 @@ pub fn compare_groups(parts: &[(&str, f64)]) -> Option<GroupComparison> {
     let inside: f64 = groups.values().map(around).sum();
     let outside: f64 = groups.values().map(|values| values.len() as f64 * (mean(values) - grand).powi(2)).sum();
     let freedom = [count - 1.0, total - count];
-    if freedom[0] < 1.0 || freedom[1] < 1.0 || !(inside > 0.0) {
+    if freedom[0] < 1.0 || freedom[1] < 1.0 || inside.is_nan() || inside <= 0.0 {
         return None;
     }
     let (between, within) = (outside / freedom[0], inside / freedom[1]);

@@ -38,7 +38,7 @@ pub fn correlation_estimate(rows: &[[f64; 2]], assumed: f64) -> Option<Correlati
     let mean = [0, 1].map(|side| rows[0][side] + rows.iter().map(|row| row[side] - rows[0][side]).sum::<f64>() / n);
     let product = |a: usize, b: usize| rows.iter().map(|row| (row[a] - mean[a]) * (row[b] - mean[b])).sum::<f64>();
     let squares = product(0, 0) * product(1, 1);
-    if !(squares > 0.0) {
+    if squares.is_nan() || squares <= 0.0 {
         return None;
     }
     let value = (product(0, 1) / squares.sqrt()).clamp(-LARGEST, LARGEST);

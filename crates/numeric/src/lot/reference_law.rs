@@ -22,7 +22,7 @@ pub fn student_two_sided(t: f64, freedom: f64) -> f64 {
 
 /// Probability that Fisher's `F` with these degrees of freedom is above a value.
 pub fn fisher_sf(f: f64, [above, below]: [f64; 2]) -> f64 {
-    if !(f > 0.0) {
+    if f.is_nan() || f <= 0.0 {
         return 1.0;
     }
     if f.is_infinite() {

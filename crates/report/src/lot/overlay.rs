@@ -15,7 +15,7 @@ pub(super) fn overlay(one: &CharacteristicInLot) -> Option<Chart> {
     let low = [assumed, parts].map(|of| of.mean - REACH * of.sigma);
     let high = [assumed, parts].map(|of| of.mean + REACH * of.sigma);
     let (low, high) = (low[0].min(low[1]), high[0].max(high[1]));
-    if !(high > low) {
+    if low.partial_cmp(&high) != Some(std::cmp::Ordering::Less) {
         return None;
     }
     let places: Vec<f64> =

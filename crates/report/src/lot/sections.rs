@@ -1,7 +1,7 @@
 //! Document of a comparison with a lot.
 
 use crate::document::number::{known, percent, plural, significant, yielded};
-use crate::document::{Blocks, Cell, Columns, DataTable, Document, Section, Tone};
+use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Section, Tone};
 use crate::lot::LotReport;
 use crate::lot::overlay::overlay;
 use crate::lot::words::{departures, figure, placed, verdict};
@@ -108,7 +108,7 @@ fn section(one: &CharacteristicInLot) -> Section {
             section.note(format!("curvature, spread and interactions change the mean by {}", significant(left, 3)));
         }
     }
-    section.blocks.extend(overlay(one).map(crate::document::Element::Chart));
+    section.blocks.extend(overlay(one).map(Element::Chart));
     if let LotVerdict::Unexplained { .. } = one.verdict {
         section.note("compare the assemblies of single measured parts with the model, and look for what is not in it");
     }
@@ -155,7 +155,6 @@ fn sources(one: &CharacteristicInLot) -> DataTable {
         .column("sigma", "sigma", |row| Cell::number(row.values[1], |_| row.sigma.clone()))
         .column("yield", "within limits", |row| Cell::number(row.values[2], |_| row.yield_.clone()))
         .table("assemblies", rows)
-        .of_sections()
 }
 
 fn difference_table(one: &CharacteristicInLot) -> DataTable {
@@ -167,7 +166,6 @@ fn difference_table(one: &CharacteristicInLot) -> DataTable {
         .column("variance", "of the variance", |row| Cell::number(row.variance, |value| significant(value, 3)))
         .table("differences", &one.differences)
         .at_most([LISTED, usize::MAX], "further dimensions change less".to_owned())
-        .of_sections()
 }
 
 /// Sections of the columns that group the parts.
