@@ -62,43 +62,53 @@ pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
         Some(most) => format!("min({bonus}, {})", literal(most, own)),
         None => format!("({bonus})"),
     };
-    let nominal = nominal(line)?;
-    let [unit_zone, of_zone] = ["unit", "zone"].map(|part| format!("{}.{part}", line.name()));
-    let mut made = Plain::default();
-    let mut keys = others(line, &["position", "nominal", "unit"]);
-    keys.insert(0, (key(line, "nominal"), pair(line, [0.0; 2])));
-    // A zone with a cost has its width as a dimension, and the places in it are dimensions of its own.
     let width = frame.get("width").and_then(|width| match &width.value {
         Value::Text(name) => Some(quoted(name)),
         _ => None,
     });
-    match &width {
-        None => {
-            keys.insert(1, (key(line, "position"), number(line, 2.0)));
-            made.dimension(line, unit_zone.clone(), Of::Plain, keys);
-            made.formula(line, of_zone.clone(), Of::Line, format!("{} + {bonus}", literal(zone, own)));
-        }
-        Some(width) => {
-            keys.insert(1, (key(line, "position"), number(line, zone)));
-            made.dimension(line, unit_zone.clone(), Of::Line, keys);
-            made.formula(line, of_zone.clone(), Of::Line, format!("{width} + {bonus}"));
-        }
-    }
+    let sizes = std::iter::once(size.to_owned()).chain(form.map(|form| form.name)).collect();
+    Ok(Some(widened(line, &Widened { zone, bonus, width, sizes, unit: own }, nominal(line)?)))
+}
+
+/// Zone that a bonus widens.
+struct Widened<'a> {
+    zone: f64,
+    /// Text of the bonus in a formula.
+    bonus: String,
+    /// Text of the dimension that holds the width of a zone with a cost.
+    width: Option<String>,
+    /// Names of the sizes and of the form in the bonus.
+    sizes: Vec<String>,
+    /// Unit of numbers in formulas.
+    unit: Option<&'a str>,
+}
+
+/// Plain lines of a zone that a bonus widens. The places in a zone with a cost are dimensions of its width, and others are those on a zone of
+/// radius 1.
+fn widened(line: &Line<'_>, of: &Widened<'_>, nominal: [f64; 2]) -> Plain {
+    let Widened { zone, bonus, width, sizes, unit } = of;
+    let [unit_zone, of_zone] = ["unit", "zone"].map(|part| format!("{}.{part}", line.name()));
+    let mut made = Plain::default();
+    let mut keys = others(line, &["position", "nominal", "unit"]);
+    keys.insert(0, (key(line, "nominal"), pair(line, [0.0; 2])));
+    let (diameter, kind, text) = match width {
+        None => (2.0, Of::Plain, literal(*zone, *unit)),
+        Some(width) => (*zone, Of::Line, width.clone()),
+    };
+    keys.insert(1, (key(line, "position"), number(line, diameter)));
+    made.dimension(line, unit_zone.clone(), kind, keys);
+    made.formula(line, of_zone.clone(), Of::Line, format!("{text} + {bonus}"));
     for (axis, nominal) in ["_x", "_y"].into_iter().zip(nominal) {
-        let place = quoted(&format!("{unit_zone}{axis}"));
-        let deviation = match &width {
-            None => format!("{}/2*{place}", quoted(&of_zone)),
-            Some(width) => format!("{}/{width}*{place}", quoted(&of_zone)),
-        };
+        let divisor = width.clone().unwrap_or_else(|| "2".to_owned());
+        let deviation = format!("{}/{divisor}*{}", quoted(&of_zone), quoted(&format!("{unit_zone}{axis}")));
         let formula = match nominal {
             0.0 => deviation,
-            nominal => format!("{} + {deviation}", literal(nominal, own)),
+            nominal => format!("{} + {deviation}", literal(nominal, *unit)),
         };
         made.formula(line, format!("{}{axis}", line.name()), Of::Line, formula);
     }
-    let sizes: Vec<String> = std::iter::once(size.to_owned()).chain(form.map(|form| form.name)).collect();
-    made.product(line, &sizes, &["_x", "_y"].map(|axis| format!("{unit_zone}{axis}")));
-    Ok(Some(made))
+    made.product(line, sizes, &["_x", "_y"].map(|axis| format!("{unit_zone}{axis}")));
+    made
 }
 
 /// Feature whose size gives the bonus: `hole` or `pin`, with its name. Returns None if there is none.

@@ -30,14 +30,14 @@ pub(super) struct DatumFacts<'a> {
     pub(super) material: Option<(&'static str, String)>,
 }
 
-/// Words of the law of a zone, for comments.
-struct Words<'a> {
+/// LawWords of the law of a zone, for comments.
+struct LawWords<'a> {
     zone: &'a ZoneEntry<'a>,
     text: String,
 }
 
-fn words<'a>(zone: &'a ZoneEntry<'a>, uniform: &str, normal: &str) -> Words<'a> {
-    Words { zone, text: format!("{}: {}", zone.key, if zone.uniform { uniform } else { normal }) }
+fn words<'a>(zone: &'a ZoneEntry<'a>, uniform: &str, normal: &str) -> LawWords<'a> {
+    LawWords { zone, text: format!("{}: {}", zone.key, if zone.uniform { uniform } else { normal }) }
 }
 
 /// Deviation of a feature within its zones, with the lines that it needs.
@@ -73,7 +73,7 @@ pub(super) fn torsor(feature: &ZonedFeature<'_>, facts: &DatumFacts<'_>, lines: 
     }
 }
 
-fn noted(feature: &ZonedFeature<'_>, words: Words<'_>) -> Owner {
+fn noted(feature: &ZonedFeature<'_>, words: LawWords<'_>) -> Owner {
     let zone = Some(words.zone.label(&feature.full()));
     Owner { note: words.text, zone, ..feature.owner.clone() }
 }
