@@ -294,7 +294,8 @@ fn evaluated(
     if let Some(first) = ledger.non_repeatable.iter().chain(&drawn.non_repeatable).next() {
         return Err(ShardError::NotRepeatable { output: first.output.clone() });
     }
-    let spent = drawn.run.and(&ledger.run);
+    // The points that choose the bins belong to the sample of another shard, which counts their failures.
+    let spent = RunSummary { failed: drawn.run.failed, ..drawn.run.and(&ledger.run) };
     Ok(ShardSums {
         shard,
         samples: options.samples,
