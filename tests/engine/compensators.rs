@@ -233,9 +233,11 @@ fn yields_of_those_that_keep_another_limit() {
     let analysis = analyze(&study.problem, &study.options).unwrap();
     let [a, _, c] = &analysis.characteristics[..] else { panic!() };
     let [simulated, _, other] = &sample.characteristics[..] else { panic!() };
-    for (found, key) in
-        [(a.distribution.conditional.as_ref(), "a"), (simulated.conditional.as_ref(), "a"), (other.conditional.as_ref(), "c")]
-    {
+    for (found, key) in [
+        (a.distribution.conditional.as_ref(), "a"),
+        (simulated.conditional.as_ref(), "a"),
+        (other.conditional.as_ref(), "c"),
+    ] {
         let found = found.unwrap();
         let [low, high] = found.interval.unwrap();
         assert_eq!(found.given, "b");
@@ -246,7 +248,8 @@ fn yields_of_those_that_keep_another_limit() {
     // Different independent dimensions: the own yield, by the normal distribution.
     let own = c.distribution.conditional.as_ref().unwrap();
     assert!(
-        (own.value - number("c")).abs() < 1e-12 && (c.distribution.capability.unwrap().yield_().unwrap() - own.value).abs() < 1e-15
+        (own.value - number("c")).abs() < 1e-12
+            && (c.distribution.capability.unwrap().yield_().unwrap() - own.value).abs() < 1e-15
     );
     // The yield of all, 84 %, misses the target of 92 %, which the yield of those that count meets.
     assert!((a.distribution.capability.unwrap().yield_().unwrap() - number("plain")).abs() < 1e-9);

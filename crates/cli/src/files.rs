@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::args::shared_args::OutputArgs;
 use crate::csv::CsvFolder;
 use crate::failure::Failure;
 use crate::output::Destination;
 use crate::own_file::{Content, is_free};
-use crate::shared_args::OutputArgs;
 use sensitol_study::{FileRole, JournalPlace, Study};
 
 /// Paths that are read, and paths that will be written, with links resolved.

@@ -9,8 +9,8 @@ use clap::ColorChoice;
 use tempfile::TempPath;
 
 use crate::advice;
+use crate::args::shared_args::OutputArgs;
 use crate::failure::Failure;
-use crate::shared_args::OutputArgs;
 use sensitol::warning::Warning;
 use sensitol_numeric::names::{clean, clipped, is_hidden};
 use sensitol_report::WarningReport;

@@ -39,7 +39,8 @@ fn of_pair(
 ) -> Option<ConditionalYield> {
     let rejected = |c: usize| characteristics[c].distribution.capability.and_then(|of| of.rejected());
     let [own, other] = [rejected(c)?, rejected(given)?];
-    let measured = |c: usize, rejected: f64| (rejected, characteristics[c].evidence.sampling.as_ref().map(|of| of.rejected));
+    let measured =
+        |c: usize, rejected: f64| (rejected, characteristics[c].evidence.sampling.as_ref().map(|of| of.rejected));
     let name = characteristics[given].characteristic.name();
     if are_independent(problem, [c, given]) {
         let interval = characteristics[c].yield_interval()?;

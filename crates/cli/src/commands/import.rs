@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use crate::args::import_args::ImportArgs;
 use crate::commands::import_step;
 use crate::failure::{Exit, Failure};
-use crate::import_args::ImportArgs;
 use crate::output::{Destination, Look};
 use crate::table::{bytes, failed, measured_of, study_of_bytes};
 use sensitol_study::{Study, StudyText};

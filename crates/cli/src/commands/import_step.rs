@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use crate::args::import_args::{DEFAULT_NAME, ImportArgs};
 use crate::failure::{Exit, Failure};
-use crate::import_args::{DEFAULT_NAME, ImportArgs};
 use crate::output::Destination;
 use crate::table::{failed, file_name};
 use sensitol_study::import::{StepImportFault, StepRequest, is_step, step_into, step_study};

@@ -8,12 +8,12 @@ use clap::{Args, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::args::shared_args::OutputArgs;
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output;
 use crate::output::{Destination, Look, json};
 use crate::own_file::Content;
-use crate::shared_args::OutputArgs;
 use sensitol_external::journal::{KnownModel, Store, StoredAnswer};
 use sensitol_report::document::csv::guarded;
 use sensitol_report::document::number::UNKNOWN;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::args::shared_args::OutputArgs;
 use crate::args::{SamplerArg, SimulateArgs};
 use crate::commands::{rare, shard};
 use crate::csv::CsvFolder;
@@ -10,7 +11,6 @@ use crate::files::Files;
 use crate::output::{Destination, Look, json};
 use crate::running::{Clock, checked, confirmed, kept};
 use crate::sampling::{sampling, surrogate};
-use crate::shared_args::OutputArgs;
 use crate::{interrupt, study};
 use sensitol::method::Options;
 use sensitol::simulation::{Shard, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_with};

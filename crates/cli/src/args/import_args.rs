@@ -5,10 +5,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::args::shared_args::OUTPUT;
 use crate::failure::Failure;
 use crate::new_study::with_schema;
 use crate::output::Destination;
-use crate::shared_args::OUTPUT;
 use crate::table::TableArgs;
 
 /// Heading of the options for STEP files.

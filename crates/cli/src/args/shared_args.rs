@@ -7,100 +7,100 @@ use clap::Args;
 use crate::values::{DerivativesArg, MethodArg, SensitivitiesArg, StencilArg, count, part, positive};
 
 /// Help heading of the options on output.
-pub(super) const OUTPUT: &str = "Output";
+pub(crate) const OUTPUT: &str = "Output";
 
 #[derive(Debug, Args)]
-pub(super) struct StudyArgs {
+pub(crate) struct StudyArgs {
     /// The study, a .toml or .json file
-    pub(super) study: PathBuf,
+    pub(crate) study: PathBuf,
 
     #[command(flatten)]
-    pub(super) how: HowArgs,
+    pub(crate) how: HowArgs,
 }
 
 /// Method and accuracy of an analysis.
 #[derive(Debug, Args)]
-pub(super) struct HowArgs {
+pub(crate) struct HowArgs {
     /// The method [default: that of the study, or auto]; auto evaluates where the error of sigma falls most, until `--accuracy` is met
     #[arg(short, long, value_name = "METHOD")]
-    pub(super) method: Option<MethodArg>,
+    pub(crate) method: Option<MethodArg>,
 
     /// Ask for this characteristic only (repeatable)
     #[arg(long = "characteristic", alias = "kc", value_name = "NAME")]
-    pub(super) characteristics: Vec<String>,
+    pub(crate) characteristics: Vec<String>,
 
     /// Take the values of this one of the study's [configurations]; `all` means each in turn, and in allocate all at once
     #[arg(long, value_name = "NAME")]
-    pub(super) configuration: Option<String>,
+    pub(crate) configuration: Option<String>,
 
     /// Relative error of sigma that auto goes down to [default: that of the study, or 0.01]
     #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
-    pub(super) accuracy: Option<f64>,
+    pub(crate) accuracy: Option<f64>,
 
     /// Wanted error of the skewness, for auto
     #[arg(long, value_name = "E", value_parser = positive, hide_short_help = true)]
-    pub(super) accuracy_skewness: Option<f64>,
+    pub(crate) accuracy_skewness: Option<f64>,
 
     /// Wanted error of the kurtosis, for auto
     #[arg(long, value_name = "E", value_parser = positive, hide_short_help = true)]
-    pub(super) accuracy_kurtosis: Option<f64>,
+    pub(crate) accuracy_kurtosis: Option<f64>,
 
     /// Wanted error of the yield, a share such as 1e-5, for auto
     #[arg(long, value_name = "E", value_parser = part, allow_negative_numbers = true, hide_short_help = true)]
-    pub(super) accuracy_yield: Option<f64>,
+    pub(crate) accuracy_yield: Option<f64>,
 
     /// Evaluate the model at most N times; without it a method that needs more than 1000000 is refused
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
-    pub(super) budget: Option<usize>,
+    pub(crate) budget: Option<usize>,
 
     /// Evaluate at K sigma on either side instead of at the nodes that suit each distribution
     #[arg(long, value_name = "K", value_parser = positive, hide_short_help = true)]
-    pub(super) step: Option<f64>,
+    pub(crate) step: Option<f64>,
 
     /// The interactions that six-n examines: strongest, adjacent, or A:B,C:D (names with : or , in backquotes)
     #[arg(long, value_name = "PAIRS", hide_short_help = true)]
-    pub(super) pairs: Option<String>,
+    pub(crate) pairs: Option<String>,
 
     /// How six-n evaluates an interaction: two-point, or four-point as the papers do
     #[arg(long, value_name = "STENCIL", hide_short_help = true)]
-    pub(super) stencil: Option<StencilArg>,
+    pub(crate) stencil: Option<StencilArg>,
 
     /// Nodes of the quadrature rules of dimension-reduction, univariate or bivariate: 3, 5 or 7 [default: 5]
     #[arg(long, value_name = "M", hide_short_help = true)]
-    pub(super) nodes: Option<usize>,
+    pub(crate) nodes: Option<usize>,
 
     /// Sensitivities of varying dimensions, or of all: two evaluations each for those without tolerance
     #[arg(long, value_name = "WHICH", hide_short_help = true)]
-    pub(super) sensitivities: Option<SensitivitiesArg>,
+    pub(crate) sensitivities: Option<SensitivitiesArg>,
 
     /// Where derivatives come from [default: exact sensitivities where formulas give them, moments by differences]
     #[arg(long, value_name = "SOURCE", hide_short_help = true)]
-    pub(super) derivatives: Option<DerivativesArg>,
+    pub(crate) derivatives: Option<DerivativesArg>,
 }
 
 /// Time limit and journal of a run.
 #[derive(Debug, Args)]
-pub(super) struct WorkArgs {
+pub(crate) struct WorkArgs {
     /// Stop after S seconds and report the results so far
     #[arg(long, value_name = "S", value_parser = positive)]
-    pub(super) time: Option<f64>,
+    pub(crate) time: Option<f64>,
 
     /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
     #[arg(long, value_name = "FILE")]
-    pub(super) journal: Option<PathBuf>,
+    pub(crate) journal: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct OutputArgs {
+pub(crate) struct OutputArgs {
     /// Print JSON
     #[arg(long, help_heading = OUTPUT)]
-    pub(super) json: bool,
+    pub(crate) json: bool,
 
     /// Write to a file instead of stdout
     #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
-    pub(super) output: Option<PathBuf>,
+    pub(crate) output: Option<PathBuf>,
 
     /// Write over files that sensitol did not write
     #[arg(long, help_heading = OUTPUT)]
-    pub(super) force: bool,
+    pub(crate) force: bool,
 }

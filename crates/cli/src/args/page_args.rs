@@ -4,41 +4,41 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::shared_args::OUTPUT;
+use crate::args::shared_args::OUTPUT;
 
 #[derive(Debug, Args)]
-pub(super) struct WorkbenchArgs {
+pub(crate) struct WorkbenchArgs {
     /// The study that the page opens, .toml or .json
-    pub(super) study: Option<PathBuf>,
+    pub(crate) study: Option<PathBuf>,
 
     /// The file to write
     #[arg(short, long, value_name = "FILE.html", default_value = "workbench.html", help_heading = OUTPUT)]
-    pub(super) output: PathBuf,
+    pub(crate) output: PathBuf,
 
     /// Write over a file that sensitol did not write
     #[arg(long, help_heading = OUTPUT)]
-    pub(super) force: bool,
+    pub(crate) force: bool,
 
     /// The page without a study, as web/build writes it
     #[arg(long, value_name = "FILE.html")]
-    pub(super) page: Option<PathBuf>,
+    pub(crate) page: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct ServeArgs {
+pub(crate) struct ServeArgs {
     /// The folder of the studies
     #[arg(default_value = ".")]
-    pub(super) folder: PathBuf,
+    pub(crate) folder: PathBuf,
 
     /// The port; a free one unless given
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
-    pub(super) port: u16,
+    pub(crate) port: u16,
 
     /// The address to listen at; another one than 127.0.0.1 lets other machines in that know the token
     #[arg(long, value_name = "ADDRESS")]
-    pub(super) address: Option<std::net::IpAddr>,
+    pub(crate) address: Option<std::net::IpAddr>,
 
     /// The page without a study, as web/build writes it
     #[arg(long, value_name = "FILE.html")]
-    pub(super) page: Option<PathBuf>,
+    pub(crate) page: Option<PathBuf>,
 }

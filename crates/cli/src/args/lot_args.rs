@@ -4,50 +4,50 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::shared_args::{OUTPUT, OutputArgs, StudyArgs, WorkArgs};
+use crate::args::shared_args::{OUTPUT, OutputArgs, StudyArgs, WorkArgs};
 use crate::values::{part, samples_or_none};
 
 #[derive(Debug, Args)]
-pub(super) struct CompareLotArgs {
+pub(crate) struct CompareLotArgs {
     #[command(flatten)]
-    pub(super) study: StudyArgs,
+    pub(crate) study: StudyArgs,
 
     /// The lot: tables (.csv, .tsv, .xlsx) with a row for each part or assembly, and columns by the names of dimensions and
     /// characteristics; a header may carry a unit, `bore [mm]`. Columns lot, machine, operator and time are known
     #[arg(value_name = "LOT", required = true)]
-    pub(super) lot: Vec<PathBuf>,
+    pub(crate) lot: Vec<PathBuf>,
 
     /// Probability that any of the tests refutes a right assumption [default: 0.05]
     #[arg(long, value_name = "P", value_parser = part, allow_negative_numbers = true)]
-    pub(super) level: Option<f64>,
+    pub(crate) level: Option<f64>,
 
     /// The weight of the study in --update, in parts: 0 for none [default: 30]
     #[arg(long, value_name = "N", value_parser = samples_or_none, allow_negative_numbers = true)]
-    pub(super) assumed_parts: Option<u64>,
+    pub(crate) assumed_parts: Option<u64>,
 
     /// Write the study with mean and sigma of every measured dimension, and with significant correlations; otherwise as it is
     #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
-    pub(super) update: Option<PathBuf>,
+    pub(crate) update: Option<PathBuf>,
 
     #[command(flatten)]
-    pub(super) work: WorkArgs,
+    pub(crate) work: WorkArgs,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
-    pub(super) threads: Option<u16>,
+    pub(crate) threads: Option<u16>,
 
     /// Exit with 1 when an assumption is refuted
     #[arg(long)]
-    pub(super) check: bool,
+    pub(crate) check: bool,
 
     /// Write the report as one HTML page
     #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
-    pub(super) html: Option<PathBuf>,
+    pub(crate) html: Option<PathBuf>,
 
     /// Write parts, assemblies, differences and groups as CSV files into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
-    pub(super) csv: Option<PathBuf>,
+    pub(crate) csv: Option<PathBuf>,
 
     #[command(flatten)]
-    pub(super) output: OutputArgs,
+    pub(crate) output: OutputArgs,
 }

@@ -1,17 +1,23 @@
 //! The arguments of the command line.
 
+pub(crate) mod import_args;
+pub(crate) mod init_args;
+pub(crate) mod lot_args;
+pub(crate) mod page_args;
+pub(crate) mod shared_args;
+
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
+use crate::args::import_args::ImportArgs;
+pub(super) use crate::args::init_args::InitArgs;
+pub(super) use crate::args::lot_args::CompareLotArgs;
+pub(super) use crate::args::page_args::{ServeArgs, WorkbenchArgs};
+use crate::args::shared_args::OUTPUT;
+pub(super) use crate::args::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
 use crate::commands::examples::ExamplesArgs;
 use crate::commands::journal::JournalArgs;
-use crate::import_args::ImportArgs;
-pub(super) use crate::init_args::InitArgs;
-pub(super) use crate::lot_args::CompareLotArgs;
-pub(super) use crate::page_args::{ServeArgs, WorkbenchArgs};
-use crate::shared_args::OUTPUT;
-pub(super) use crate::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
 use crate::table::TableArgs;
 pub(super) use crate::values::{
     CostArg, DerivativesArg, MaximiseArg, MethodArg, MinimiseArg, Over, Place, SamplerArg, SensitivitiesArg, StackArg,
