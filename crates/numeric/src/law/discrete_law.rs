@@ -147,9 +147,9 @@ pub(super) fn largest_jump(surface: &Surface) -> f64 {
     Groups::of_surface(surface).map_or(0.0, |groups| groups.likeliest())
 }
 
-/// Spread of all inputs with a density, in sigmas of the surface, below which the transform does not resolve the edges of clusters. Those of
-/// 4e-6 sigma were resolved to 1e-11, those of 4e-7 not.
-const NARROW: f64 = 2e-6;
+/// Effect of all inputs with a density at three of their sigmas, in sigmas of the surface, below which the transform does not resolve the
+/// edges of clusters. At 7e-6 it resolved them to 1e-11, at 1.2e-6 not at all.
+const NARROW: f64 = 3e-6;
 /// Distance from a cluster, in sigmas, beyond which a tail is that between the clusters. It was at most 8e-6.
 const BLUR: f64 = 2e-5;
 
@@ -163,9 +163,9 @@ pub(super) fn blur(surface: &Surface, sigma: f64) -> Option<f64> {
     narrow.then_some(BLUR * sigma)
 }
 
-/// Bound of the effect of an input at its ends, or at eight sigmas where these lie farther out.
+/// Effect of an input at its ends, or at three sigmas where these lie farther out.
 fn most_effect(surface: &Surface, input: usize) -> f64 {
-    let reach = |j: usize| surface.inputs[j].ends.iter().fold(1.0, |most: f64, end| most.max(end.abs())).min(8.0);
+    let reach = |j: usize| surface.inputs[j].ends.iter().fold(1.0, |most: f64, end| most.max(end.abs())).min(3.0);
     let powers: f64 = (1..).zip(&surface.parts[input][1..]).map(|(power, c)| c.abs() * reach(input).powi(power)).sum();
     let products: f64 = surface.neighbours[input].iter().map(|&(k, c)| c.abs() * reach(k)).sum();
     powers + reach(input) * products
