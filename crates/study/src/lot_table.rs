@@ -64,6 +64,16 @@ pub enum LotTableFault {
         /// The header.
         name: String,
     },
+    /// A row has more cells than the header.
+    #[error("line {line} has {found} cells, and the header {expected}")]
+    MoreCells {
+        /// Line of the table.
+        line: u64,
+        /// Number of cells in it.
+        found: usize,
+        /// Number of cells in the header.
+        expected: usize,
+    },
     /// A cell is not a number.
     #[error("line {line}, column `{column}`: `{text}` is not a number")]
     NotANumber {
@@ -106,6 +116,9 @@ impl LotTableFault {
             }
             Self::NoColumn { known, .. } => format!("headers are the names of the study: {}", known.join(", ")),
             Self::LotColumnTwice { .. } => "one of the two needs another name".to_owned(),
+            Self::MoreCells { .. } => {
+                "where commas are decimal ones, separate columns by semicolons or tabs".to_owned()
+            }
             Self::NotANumber { .. } => "leave a cell empty, or write NA, where nothing was measured".to_owned(),
             Self::NotATime { .. } => "times are numbers, 06:30, 06:30:15, 2026-11-28 or 2026-11-28 06:30".to_owned(),
             Self::LotUnit { .. } => "write the column in a unit of the same kind".to_owned(),
@@ -135,6 +148,9 @@ pub fn read_lot(sheet: &Sheet, study: &Study) -> Result<ReadLot, LotTableFault> 
     if let Some(place) = (1..headers.len()).find(|&at| !headers[at].is_empty() && headers[..at].contains(&headers[at]))
     {
         return Err(LotTableFault::LotColumnTwice { name: headers[place].clone() });
+    }
+    if let Some((line, row)) = rows.iter().find(|(_, row)| row.len() > headers.len()) {
+        return Err(LotTableFault::MoreCells { line: *line, found: row.len(), expected: headers.len() });
     }
     let (mut table, mut notes, mut left_out) = (LotTable::default(), Vec::new(), Vec::new());
     for (place, header) in headers.iter().enumerate().filter(|(_, header)| !header.is_empty()) {

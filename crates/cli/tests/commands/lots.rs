@@ -102,7 +102,8 @@ fn wrong_lots_are_refused() {
         assert!(words.iter().all(|words| told.contains(words)), "{told}");
     };
     says("depht\n1\n2\n3\n4\n5\n", &["no column bears the name", "did you mean `depth` by `depht`?"]);
-    says("depth\n42,01\n42,02\n42,0x\n42,03\n42,01\n", &["line 4", "`42,0x` is not a number"]);
+    says("depth;ring\n42,01;2\n42,02;2\n42,0x;2\n", &["line 4", "`42,0x` is not a number"]);
+    says("depth\n42,01\n42,02\n", &["line 2 has 2 cells, and the header 1", "semicolons"]);
     says("depth;ring;depth\n1;2;3\n", &["the column `depth` stands twice"]);
     says("depth [kg]\n42\n", &["in kg, and the study has mm"]);
     says("depth\n42.01\n42.02\n", &["2 measured values", "at least 5"]);

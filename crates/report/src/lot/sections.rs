@@ -25,7 +25,7 @@ pub(super) fn document(report: &LotReport) -> Document {
     let mut document = Document::titled(report.head.title.as_deref());
     let tests = plural(found.tests, "test", "tests");
     let level = percent(found.family_wise_level);
-    document.line(format!("{}: {tests}, wrong together with at most {level} (Holm)", report.lot.join(", ")));
+    document.line(format!("{}: {tests}, wrong together with at most {level} % (Holm)", report.lot.join(", ")));
     document.gap();
     for one in &found.characteristics {
         document.line(format!("{}: {}", one.name, verdict(one)));

@@ -39,7 +39,7 @@ pub(super) fn departures(one: &DimensionInLot, level: f64) -> Vec<String> {
             GroupKind::Operator => "operators",
         };
         let part = of.between.value.powi(2) / (of.between.value.powi(2) + of.within.value.powi(2));
-        phrases.push(format!("{what} differ, {} of the variance between `{}`", percent(part), of.column));
+        phrases.push(format!("{what} differ, {} % of the variance between `{}`", percent(part), of.column));
     }
     if one.shape_test.is_some_and(|test| test.refutes(level)) {
         phrases.push(shape(one));
@@ -54,7 +54,7 @@ fn shape(one: &DimensionInLot) -> String {
         Some(Departure::Mixture { means, share }) => {
             let [a, b] = means.map(short);
             let parts = [1.0 - share, *share].map(percent);
-            format!("not {of}: like two groups about {a} ({}) and {b} ({})", parts[0], parts[1])
+            format!("not {of}: like two groups about {a} ({} %) and {b} ({} %)", parts[0], parts[1])
         }
         Some(Departure::Truncation { ends }) => {
             let ends = match ends {
