@@ -7,6 +7,7 @@ use crate::assembly::formula::FormulaError;
 use crate::assembly::implicit::ConditionsError;
 use crate::assembly::{CompositeError, EvaluationError, NoColumn};
 use crate::compare::CompareError;
+use crate::lot::LotError;
 use crate::method::MethodError;
 use crate::problem::ProblemError;
 use crate::rare::RareError;
@@ -62,6 +63,9 @@ pub enum Error {
     /// The problem cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A lot cannot be compared with the study.
+    #[error(transparent)]
+    Lot(#[from] LotError),
     /// A sample cannot be divided or merged.
     #[error(transparent)]
     Shard(#[from] ShardError),

@@ -29,11 +29,12 @@ mod search;
 mod surface;
 mod task;
 
+pub use crate::allocation::cost::cost_curve::Curve;
 pub use crate::allocation::cost::cost_curve::CurveKind;
-pub use crate::allocation::cost::cost_curve::{Curve, Offer, Priced};
 pub use crate::allocation::cost::cost_error::CostError;
 pub use crate::allocation::cost::default_costs::CostBasis;
-pub use crate::allocation::cost::priced_zone::{PricedZone, ZonePart};
+pub use crate::allocation::cost::priced_group::{Offer, Priced};
+pub use crate::allocation::cost::priced_group::{PricedZone, ZonePart};
 pub use crate::allocation::cost::process_option::Made;
 pub use crate::allocation::requirement::quality_loss::QualityLoss;
 pub use crate::allocation::result::allocation::ProofShape;

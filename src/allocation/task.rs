@@ -1,7 +1,7 @@
 //! Task and options of an allocation, and its errors.
 
-use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::cost::default_costs::{CostBasis, relative, unscalable};
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::cost::setup_cost::{MOST as MOST_MACHINES, SetUp};
 use crate::allocation::requirement::quality_loss::QualityLoss;
 use crate::allocation::requirement::registry::form_of;

@@ -51,6 +51,16 @@ impl Together {
         }
     }
 
+    /// True if no count exceeds the number of points.
+    pub(super) fn counts_up_to(&self, answered: u64) -> bool {
+        let within = |counts: &Parts<u64>| {
+            let total = counts.iter().try_fold(0u64, |sum, &count| sum.checked_add(count));
+            total.is_some_and(|total| total <= answered)
+        };
+        let kept = self.kept.iter().zip(&self.known).all(|(kept, known)| kept <= known);
+        kept && within(&self.known) && self.conditional.iter().flatten().all(within)
+    }
+
     /// Adds another portion, part by part.
     pub(super) fn merge(&mut self, other: &Self) {
         (0..REPLICATES).for_each(|part| self.merge_part(part, other, part));

@@ -15,6 +15,7 @@ mod replicate_moments;
 mod sample_groups;
 mod serialisation;
 mod shard;
+mod shard_sums;
 mod surface_difference;
 mod surrogates;
 mod tally;
@@ -25,7 +26,8 @@ pub(crate) use characteristic::{BINS, CHOICE};
 pub use characteristic::{Histogram, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 pub use indices::{IndexEstimate, SampledFactor};
 pub use sensitol_numeric::sampling::{Estimate, Sampler, SamplingError};
-pub use shard::{Shard, ShardError, ShardSums, merge_shards, simulate_shard};
+pub use shard::{merge_shards, simulate_shard};
+pub use shard_sums::{Shard, ShardError, ShardSums};
 
 use std::ops::Range;
 use std::time::Duration;

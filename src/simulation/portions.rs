@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::assembly::near_rows;
-use crate::simulation::shard::Shard;
+use crate::simulation::shard_sums::Shard;
 use crate::simulation::{COSTLY, REPLICATES, ROWS, SimulationOptions, TASKS};
 use sensitol_numeric::sampling::{Portion, Sampler};
 

@@ -4,198 +4,17 @@
 //! and bins are whole numbers, which add up exactly. Means and central sums are merged pairwise (Pébay 2008), so that moments differ from
 //! those of one run by rounding alone.
 
-use serde::{Deserialize, Serialize};
-
-use crate::assembly::{EvaluationError, Points, Responses, Run};
+use crate::assembly::{Points, Responses, Run};
 use crate::evaluation::{Evaluator, Restoration, Restore, at_any_size};
 use crate::problem::Problem;
-use crate::simulation::joint_result::Together;
 use crate::simulation::portions::Portions;
-use crate::simulation::sample_groups::{GroupSums, MeasuredGroups};
+use crate::simulation::sample_groups::MeasuredGroups;
+use crate::simulation::shard_sums::{Shard, ShardError, ShardSums, ShardWork};
 use crate::simulation::tally::Tally;
 use crate::simulation::{MOST, Pace, Sample, Simulation, SimulationError, SimulationOptions, keep_rows};
-use crate::summary::{RunSummary, StopReason};
-use sensitol_numeric::sampling::{Draws, Fine, LargestPoints, Room, Sampler, Summary};
+use crate::summary::RunSummary;
+use sensitol_numeric::sampling::{Draws, Room, Sampler};
 use sensitol_numeric::time::Instant;
-
-/// Greatest number of shards of a sample.
-const SHARDS: u64 = 100_000;
-
-/// Part of a sample that one process evaluates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Shard {
-    number: u64,
-    count: u64,
-}
-
-impl Shard {
-    /// Shard `number` of `count`, counted from 1.
-    ///
-    /// # Errors
-    /// If the number lies outside 1 to `count`, or `count` above 100 000.
-    pub fn new(number: u64, count: u64) -> Result<Self, ShardError> {
-        match (1..=SHARDS).contains(&count) && (1..=count).contains(&number) {
-            true => Ok(Self { number, count }),
-            false => Err(ShardError::NoSuchShard { number, count, most: SHARDS }),
-        }
-    }
-
-    /// Number of this shard, from 1.
-    pub fn number(self) -> u64 {
-        self.number
-    }
-
-    /// Number of all shards.
-    pub fn count(self) -> u64 {
-        self.count
-    }
-
-    /// Range of this shard in `total` things that all shards divide evenly.
-    pub(super) fn range(self, total: u64) -> [u64; 2] {
-        let end = |number: u64| (u128::from(total) * u128::from(number) / u128::from(self.count)) as u64;
-        [end(self.number - 1), end(self.number)]
-    }
-}
-
-/// Sums of one shard, to be written to a file and merged with those of the others.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ShardSums {
-    /// Shard that was evaluated.
-    pub shard: Shard,
-    /// Points of the whole sample.
-    pub samples: u64,
-    /// Seed of the whole sample.
-    pub seed: u64,
-    /// Points of this shard.
-    answered: u64,
-    characteristics: Vec<CharacteristicSums>,
-    together: Together,
-    work: ShardWork,
-    /// True if values of this size are computed in other units.
-    #[serde(skip)]
-    rescaled: bool,
-}
-
-/// Sums of one characteristic in one shard.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct CharacteristicSums {
-    pub(super) name: String,
-    pub(super) summary: Summary,
-    pub(super) largest: LargestPoints,
-    pub(super) outside: [u64; 2],
-    pub(super) groups: GroupSums,
-    pub(super) failed: u64,
-    /// First failure, in words.
-    pub(super) error: Option<String>,
-    /// Counts in bins. None if no point has a value.
-    pub(super) bins: Option<Fine>,
-}
-
-/// Work that a shard took.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct ShardWork {
-    evaluations: u64,
-    cached: u64,
-    retried: u64,
-    failed: u64,
-    stages: u64,
-    in_model_s: f64,
-}
-
-/// Reason why a sample cannot be divided or merged.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ShardError {
-    /// The sample cannot be drawn at all.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// The number of a shard lies outside its range.
-    #[error("there is no shard {number} of {count}: shards are counted from 1, and there are at most {most}")]
-    NoSuchShard {
-        /// Number of the shard.
-        number: u64,
-        /// Number of all shards.
-        count: u64,
-        /// Greatest number of shards.
-        most: u64,
-    },
-    /// An option that needs all points in one process.
-    #[error("a shard does not go with {option}: it needs all points in one run")]
-    OneRun {
-        /// Option in words.
-        option: &'static str,
-    },
-    /// The run ended before all points of the shard were evaluated.
-    #[error("the shard was stopped after {answered} of {points} points: its sums are not written")]
-    Stopped {
-        /// Evaluated points.
-        answered: u64,
-        /// Points of the shard.
-        points: u64,
-        /// Reason.
-        reason: StopReason,
-    },
-    /// The model is not repeatable.
-    #[error("`{output}` has different values when a point is evaluated again: sums of such a model are not merged")]
-    NotRepeatable {
-        /// Name of the output.
-        output: String,
-    },
-    /// The values are too large or too small for sums in doubles.
-    #[error(
-        "values of this size are computed in other units within one run: choose units in which they are between 1e-100 and 1e100"
-    )]
-    Extreme,
-    /// There is nothing to merge.
-    #[error("there are no shards to merge")]
-    Nothing,
-    /// Two shards belong to different samples.
-    #[error("shard {number} belongs to another sample: its {what} is {found}, that of the first one {expected}")]
-    Other {
-        /// Number of the shard.
-        number: u64,
-        /// Property in which they differ.
-        what: &'static str,
-        /// Value of the shard.
-        found: String,
-        /// Value of the first shard.
-        expected: String,
-    },
-    /// The same shard is given twice, with different sums.
-    #[error("shard {number} is given twice, and its sums differ: evaluate it again")]
-    Contradiction {
-        /// Number of the shard.
-        number: u64,
-    },
-    /// Shards are missing.
-    #[error("of {count} shards {} missing: {}", many(missing), listed(missing))]
-    Missing {
-        /// Number of all shards.
-        count: u64,
-        /// Numbers of the missing ones, ascending.
-        missing: Vec<u64>,
-    },
-    /// A shard has bins of its own.
-    #[error(
-        "`{characteristic}` has no value at the first points, so that shards have no common histogram: simulate in one run"
-    )]
-    NoCommonBins {
-        /// Name of the characteristic.
-        characteristic: String,
-    },
-}
-
-/// Number of missing shards, with its verb.
-fn many(missing: &[u64]) -> String {
-    if missing.len() == 1 { "one is".to_owned() } else { format!("{} are", missing.len()) }
-}
-
-/// First missing shards.
-fn listed(missing: &[u64]) -> String {
-    const NAMED: usize = 12;
-    let named: Vec<String> = missing.iter().take(NAMED).map(u64::to_string).collect();
-    named.join(", ") + if missing.len() > NAMED { ", ..." } else { "" }
-}
 
 impl Restore for ShardSums {
     fn restore(&mut self, back: &Restoration<'_>) {
@@ -324,19 +143,6 @@ fn first_values(evaluator: &Evaluator<'_>, draws: &Draws<'_>, portions: &Portion
     values
 }
 
-impl ShardWork {
-    fn of(run: &RunSummary) -> Self {
-        let RunSummary { evaluations, cached, retried, failed, stages, in_model, .. } = *run;
-        Self { evaluations, cached, retried, failed, stages, in_model_s: in_model.as_secs_f64() }
-    }
-
-    fn add_to(self, run: RunSummary) -> RunSummary {
-        let in_model = std::time::Duration::try_from_secs_f64(self.in_model_s).unwrap_or_default();
-        let Self { evaluations, cached, retried, failed, stages, .. } = self;
-        run.and(&RunSummary { evaluations, cached, retried, failed, stages, in_model, ..RunSummary::default() })
-    }
-}
-
 /// Figures of a sample from the sums of all its shards, in any order. A shard may be given twice with the same sums.
 ///
 /// `options` gives the target for the joint yield. Evaluations: the search for assemblies that the sample hardly contains, as
@@ -355,18 +161,18 @@ pub fn merge_shards(
     let mut ordered: Vec<&ShardSums> = Vec::new();
     for one in shards {
         same_sample(problem, first, one)?;
-        match ordered.binary_search_by_key(&one.shard.number, |known| known.shard.number) {
+        match ordered.binary_search_by_key(&one.shard.number(), |known| known.shard.number()) {
             Ok(known) if !ordered[known].equals(one) => {
-                return Err(ShardError::Contradiction { number: one.shard.number });
+                return Err(ShardError::Contradiction { number: one.shard.number() });
             }
             Ok(_) => {}
             Err(place) => ordered.insert(place, one),
         }
     }
-    let given = |number: &u64| ordered.binary_search_by_key(number, |known| known.shard.number).is_ok();
-    let missing: Vec<u64> = (1..=first.shard.count).filter(|number| !given(number)).collect();
+    let given = |number: &u64| ordered.binary_search_by_key(number, |known| known.shard.number()).is_ok();
+    let missing: Vec<u64> = (1..=first.shard.count()).filter(|number| !given(number)).collect();
     if !missing.is_empty() {
-        return Err(ShardError::Missing { count: first.shard.count, missing });
+        return Err(ShardError::Missing { count: first.shard.count(), missing });
     }
     let options = SimulationOptions { samples: first.samples, seed: first.seed, ..options.clone() };
     let measured = MeasuredGroups::of(problem, options.samples);
@@ -384,26 +190,20 @@ pub fn merge_shards(
     })
 }
 
-impl ShardSums {
-    /// True if the sums are those of the other, whatever the work that they took.
-    fn equals(&self, other: &Self) -> bool {
-        self.answered == other.answered
-            && self.characteristics == other.characteristics
-            && self.together == other.together
-    }
-}
-
 /// Checks that a shard belongs to the sample of the first one, and to the problem.
 fn same_sample(problem: &Problem, first: &ShardSums, one: &ShardSums) -> Result<(), ShardError> {
-    let Shard { number, count } = one.shard;
+    let (number, count) = (one.shard.number(), one.shard.count());
     Shard::new(number, count)?;
+    if !one.add_up() {
+        return Err(ShardError::Inconsistent { number });
+    }
     let names = |sums: &ShardSums| {
         let names: Vec<&str> = sums.characteristics.iter().map(|one| one.name.as_str()).collect();
         names.join(", ")
     };
     let asked: Vec<&str> = problem.characteristics().iter().map(|one| one.name()).collect();
     let compared = [
-        ("number of shards", count.to_string(), first.shard.count.to_string()),
+        ("number of shards", count.to_string(), first.shard.count().to_string()),
         ("number of points", one.samples.to_string(), first.samples.to_string()),
         ("seed", one.seed.to_string(), first.seed.to_string()),
         ("list of characteristics", names(one), asked.join(", ")),
@@ -412,9 +212,4 @@ fn same_sample(problem: &Problem, first: &ShardSums, one: &ShardSums) -> Result<
         Some((what, found, expected)) => Err(ShardError::Other { number, what, found, expected }),
         None => Ok(()),
     }
-}
-
-/// First failure of a characteristic, as read from a file.
-pub(super) fn failure(message: &str) -> EvaluationError {
-    EvaluationError::Refused { message: message.to_owned() }
 }

@@ -13,7 +13,7 @@ use crate::simulation::joint_result as together;
 use crate::simulation::joint_result::Together;
 use crate::simulation::rare_switch_side::RareSwitchSides;
 use crate::simulation::sample_groups::{GroupSums, MeasuredGroups};
-use crate::simulation::shard::{CharacteristicSums, ShardError, failure};
+use crate::simulation::shard_sums::{CharacteristicSums, ShardError, failure};
 use crate::simulation::surface_difference::Difference;
 use crate::simulation::{REPLICATES, Simulation, SimulationOptions, TASKS};
 use crate::summary::{RunSummary, StopReason};

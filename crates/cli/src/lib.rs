@@ -42,11 +42,11 @@ use crate::commands::probe;
 use crate::commands::reference;
 use crate::commands::schema;
 use crate::commands::serve;
+use crate::commands::several;
 use crate::commands::simulate;
 use crate::commands::sweep;
 use crate::commands::watch;
 use crate::commands::workbench;
-use crate::commands::{several, shard};
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
@@ -161,7 +161,7 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let result = match &arguments.command {
         Command::Analyze(asked) => analyze_all(asked, style),
         Command::Simulate(asked) => simulate::run(asked, style),
-        Command::Merge(asked) => shard::merge(asked, style),
+        Command::Merge(asked) => simulate::shard::merge(asked, style),
         Command::Compare(asked) => compare::run(asked, style),
         Command::CompareLot(asked) => lot::run(asked, style),
         Command::Sweep(asked) => sweep::run(asked, style),

@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::compensator_fault::CompensatorFault;
 use crate::data::DataFault;
 use crate::decimal::{SAID, decimal};
 use crate::entries::vocabulary::SOLIDS;
+use crate::faults::compensator_fault::CompensatorFault;
+use crate::faults::zone_fault::ZoneFault;
 use crate::typing_habits::TypingHabit;
-use crate::zone_fault::ZoneFault;
 use sensitol::allocation::CostError;
 use sensitol::assembly::NoColumn;
 use sensitol::assembly::formula::FormulaFault;

@@ -46,7 +46,6 @@ mod analysis_change;
 mod any_error;
 mod assembly_poses;
 mod build;
-mod compensator_fault;
 mod data;
 mod decimal;
 mod deserializer;
@@ -57,6 +56,7 @@ mod error;
 mod expand;
 mod external_settings;
 mod fault_code;
+mod faults;
 mod files;
 mod folder;
 #[cfg(feature = "import")]
@@ -76,13 +76,12 @@ pub mod table;
 mod tree;
 mod typing_habits;
 pub mod write;
-mod zone_fault;
 
 use crate::build::sweep;
-pub use crate::compensator_fault::CompensatorFault;
 use crate::entries::spanned;
 use crate::external_settings::Host;
 pub use crate::external_settings::{Externals, JournalPlace};
+pub use crate::faults::compensator_fault::CompensatorFault;
 pub use crate::folder::Format;
 pub use crate::folder::StudyText;
 pub use crate::typing_habits::TypingHabit;
@@ -90,6 +89,7 @@ pub use any_error::AnyError;
 pub use assembly_poses::AssemblyPoses;
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
+pub use faults::zone_fault::ZoneFault;
 pub use files::{FileRole, NamedFile};
 #[cfg(feature = "import")]
 pub use lot_table::{LotTableFault, ReadLot, read_lot};
@@ -101,7 +101,6 @@ pub use scene::{
 };
 #[cfg(feature = "schema")]
 pub use schema::{SCHEMA_FILE, SCHEMA_ID, schema};
-pub use zone_fault::ZoneFault;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

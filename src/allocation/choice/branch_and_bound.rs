@@ -22,7 +22,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::allocation::choice::knapsack::cheapest;
 use crate::allocation::choice::option_list::ListOption;
 use crate::allocation::choice::single_offer::Setting;
-use crate::allocation::cost::cost_curve::{Offer, Priced};
+use crate::allocation::cost::priced_group::{Offer, Priced};
 use crate::allocation::requirement::constraint::{KEPT, kept};
 use crate::allocation::requirement::quality_loss::losses_at;
 use crate::allocation::result::solver_result::{Solved, Starts};

@@ -10,7 +10,7 @@
 //! with q = 1 for a worst case and q = 2 for a root of the sum of squares. Source: K. W. Chase, A. R. Parkinson, "A survey of research
 //! in the application of tolerance analysis to the design of mechanical assemblies", Research in Engineering Design 3 (1991).
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint;
 use sensitol_numeric::optimise::separable::{PowerRow, SeparableProblem};
 

@@ -10,7 +10,7 @@
 
 use crate::allocation::choice::selection::{Choice, choose_alone};
 use crate::allocation::choice::single_offer::Setting;
-use crate::allocation::cost::cost_curve::{Offer, Priced};
+use crate::allocation::cost::priced_group::{Offer, Priced};
 use crate::allocation::cost::setup_cost::{SetUp, needed};
 use crate::allocation::result::allocation::Proof;
 

@@ -9,7 +9,7 @@ use crate::allocation::choice::knapsack::cheapest;
 use crate::allocation::choice::option_list::ListOption;
 use crate::allocation::choice::outcome::Choice;
 use crate::allocation::choice::single_offer::Setting;
-use crate::allocation::cost::cost_curve::{Offer, Priced};
+use crate::allocation::cost::priced_group::{Offer, Priced};
 use crate::allocation::requirement::constraint::{Constraint, kept};
 use crate::allocation::requirement::form::Basis;
 use crate::allocation::requirement::process_options::{OptionUses, ProcessOptions};

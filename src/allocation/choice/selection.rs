@@ -4,7 +4,7 @@ use crate::allocation::choice::branch_and_bound::{Chosen, branch};
 pub(in crate::allocation) use crate::allocation::choice::outcome::Choice;
 use crate::allocation::choice::process_selection::{choose_processes, have_distributions};
 use crate::allocation::choice::single_offer::Setting;
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::{Constraint, kept};
 use crate::allocation::result::allocation::{AllocationSolver, Attainable, Proof};
 use crate::allocation::result::solver_result::{Chosen as ChosenOffers, Solved, Starts};

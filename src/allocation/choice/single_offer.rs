@@ -9,7 +9,7 @@
 //! (1986).
 
 use crate::allocation::choice::closed_form::closed_form;
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::cost::setup_cost::SetUp;
 use crate::allocation::requirement::constraint::{Constraint, kept};
 use crate::allocation::requirement::linearised::Linearised;

@@ -11,7 +11,8 @@
 
 use serde::Serialize;
 
-use crate::allocation::cost::cost_curve::{Curve, Offer, Priced};
+use crate::allocation::cost::cost_curve::Curve;
+use crate::allocation::cost::priced_group::{Offer, Priced};
 use crate::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::fits::tolerance_unit;

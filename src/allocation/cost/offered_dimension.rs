@@ -1,6 +1,6 @@
 //! Dimensions as offers make them: one path for processes with distributions of their own and for plain tolerances.
 
-use crate::allocation::cost::cost_curve::{Offer, Priced};
+use crate::allocation::cost::priced_group::{Offer, Priced};
 use sensitol_numeric::dimension::{Dimension, DimensionError};
 
 impl Offer {

@@ -1,6 +1,6 @@
 //! Costs of tolerances as a separable problem.
 
-use crate::allocation::cost::cost_curve::{Offer, Priced};
+use crate::allocation::cost::priced_group::{Offer, Priced};
 use sensitol_numeric::optimise::separable::{BoundedCost, CostedUnknown};
 
 impl BoundedCost for Offer {

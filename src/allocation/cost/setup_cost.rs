@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::allocation::cost::cost_curve::Offer;
 use crate::allocation::cost::cost_error::CostError;
+use crate::allocation::cost::priced_group::Offer;
 
 /// Greatest number of machines. More would have too many sets to examine.
 pub(in crate::allocation) const MOST: usize = 12;

@@ -1,6 +1,6 @@
 //! Process options with distributions of their own, as sums that the lists of a knapsack need.
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::surface::response::Responses;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::StandardMoments;

@@ -9,8 +9,8 @@
 //! means, the first term is a sum of squares of tolerances, exact in the search. Any other loss is represented by its
 //! value and slopes at the trial tolerances.
 
-use crate::allocation::cost::cost_curve::Priced;
 use crate::allocation::cost::cost_error::CostError;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::linearised::Linearised;
 use crate::allocation::surface::response::Responses;
 

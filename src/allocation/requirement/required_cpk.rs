@@ -4,7 +4,7 @@
 //! value = (sigma/s)^2     s = (distance from the mean to the limit)/(3 Cpk)
 //! ```
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::form::{Basis, RequirementForm};
 use crate::allocation::requirement::slack::Slack;

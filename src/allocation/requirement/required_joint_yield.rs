@@ -4,7 +4,7 @@
 //! value = (b*/b)^2     b: normal score of the reject rate, b*: that of the allowed reject rate
 //! ```
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::{Constraint, known_or_infinite};
 use crate::allocation::requirement::form::{Basis, RequirementForm};
 use crate::allocation::requirement::linearised::Linearised;

@@ -4,7 +4,7 @@
 //! value = (rss/s)^2     s: distance from the middle of the linear model to the limit
 //! ```
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::form::{Basis, RequirementForm};
 use crate::allocation::requirement::linearised::Linearised;

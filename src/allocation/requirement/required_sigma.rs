@@ -4,7 +4,7 @@
 //! value = (sigma/s)^2     s: the greatest sigma
 //! ```
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::form::{Basis, FALLS, RequirementForm};
 use crate::allocation::requirement::process_options::{OptionUses, ProcessOptions};

@@ -4,7 +4,7 @@
 //! value = (reach beyond the nominal)/(U - nominal)     linear in T where the surface is
 //! ```
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::{Constraint, known_or_infinite};
 use crate::allocation::requirement::form::{Basis, RequirementForm};
 use crate::allocation::requirement::linearised::Linearised;

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::{Constraint, known_or_infinite};
 use crate::allocation::requirement::form::{Basis, RequirementForm};
 use crate::allocation::requirement::process_options::{OptionUses, ProcessOptions};

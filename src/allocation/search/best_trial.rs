@@ -6,7 +6,7 @@
 //! follows. The tolerances before are tried too. An allocation is therefore never dearer than its start, and has a
 //! result if the start keeps everything.
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use std::rc::Rc;
 
 use crate::allocation::requirement::constraint::Constraint;

@@ -3,8 +3,8 @@
 use crate::allocation::choice::machine::choose;
 use crate::allocation::choice::selection::Choice;
 use crate::allocation::choice::single_offer::Setting;
-use crate::allocation::cost::cost_curve::{Offer, Priced};
-use crate::allocation::cost::priced_zone::holder;
+use crate::allocation::cost::priced_group::holder;
+use crate::allocation::cost::priced_group::{Offer, Priced};
 use crate::allocation::cost::setup_cost::needed;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::form::Basis;

@@ -7,7 +7,7 @@ use crate::allocation::choice::machine::choose;
 use crate::allocation::choice::process_selection::{have_distributions, is_proof};
 use crate::allocation::choice::selection::{Choice, within_bounds};
 use crate::allocation::choice::single_offer::{Setting, tightened};
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::result::allocation::{Allocation, Attainable, Status};
 use crate::allocation::result::solver_result::Chosen;

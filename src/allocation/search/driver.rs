@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::{Constraint, kept};
 use crate::allocation::requirement::form::Basis;
 use crate::allocation::requirement::registry::form_of;

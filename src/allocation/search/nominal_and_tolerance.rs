@@ -14,7 +14,7 @@
 //! tolerances about the nominal values found.
 
 use crate::allocation::choice::single_offer::Setting;
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::Constraint;
 use sensitol_numeric::optimise::augmented_lagrangian::{
     EndConditions, SmoothProblem, SmoothSolution, ValueAndSlopes, cost,

@@ -5,8 +5,9 @@
 
 use std::ops::Range;
 
-use crate::allocation::cost::cost_curve::{Curve, Offer, Priced};
-use crate::allocation::cost::priced_zone::{PricedZone, ZonePart};
+use crate::allocation::cost::cost_curve::Curve;
+use crate::allocation::cost::priced_group::{Offer, Priced};
+use crate::allocation::cost::priced_group::{PricedZone, ZonePart};
 use crate::allocation::result::allocation::Allocation;
 use crate::allocation::task::AllocationTask;
 

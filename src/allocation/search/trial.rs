@@ -3,7 +3,7 @@
 //! Derivatives only direct the search. The trial alone decides if a requirement is kept. An allocation and an analysis
 //! of its result therefore end with the same verdict.
 
-use crate::allocation::cost::cost_curve::{Offer, Priced};
+use crate::allocation::cost::priced_group::{Offer, Priced};
 use crate::allocation::cost::setup_cost::needed;
 use crate::allocation::requirement::quality_loss::QualityLoss;
 use crate::allocation::requirement::registry::form_of;

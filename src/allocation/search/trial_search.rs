@@ -19,7 +19,7 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::allocation::cost::cost_curve::{Offer, Priced};
+use crate::allocation::cost::priced_group::{Offer, Priced};
 use crate::allocation::requirement::form::Basis;
 use crate::allocation::requirement::linearised::Linearised;
 use crate::allocation::requirement::registry::form_of;

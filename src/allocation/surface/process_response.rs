@@ -3,7 +3,7 @@
 
 use std::sync::Mutex;
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::surface::band::{Reach, Scaling};
 use crate::allocation::surface::response::{Response, Responses, is_straight, shapes_of};
 use crate::analysis::law_over;

@@ -19,7 +19,7 @@
 
 use std::sync::{Arc, PoisonError};
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::surface::reject_fit::RejectFit;
 use crate::allocation::surface::response::Responses;
 use sensitol_numeric::capability::Law;

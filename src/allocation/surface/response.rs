@@ -8,8 +8,8 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::allocation::cost::cost_curve::Priced;
-use crate::allocation::cost::priced_zone::holder;
+use crate::allocation::cost::priced_group::Priced;
+use crate::allocation::cost::priced_group::holder;
 use crate::allocation::surface::band::{Reach, Scaling};
 use crate::allocation::surface::reject_fit::RejectFit;
 use crate::allocation::surface::sampled_moments::SampledCorrection;

@@ -12,7 +12,7 @@
 //!
 //! Cost: two samples of 16 384 points for every group, for cheap models and at most 128 groups.
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::assembly::Run;
 use crate::problem::Problem;
 use crate::simulation::{SimulationOptions, simulate_with};

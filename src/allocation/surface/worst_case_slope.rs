@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
-use crate::allocation::cost::cost_curve::Priced;
+use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::surface::band::Reach;
 use crate::allocation::surface::corners::{Band, Corners, Places};
 use crate::allocation::surface::response::Responses;

@@ -4,28 +4,28 @@ pub(crate) mod import_args;
 pub(crate) mod init_args;
 pub(crate) mod lot_args;
 pub(crate) mod page_args;
+pub(crate) mod sampled_args;
 pub(crate) mod shared_args;
 
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
+use clap::{Args, ColorChoice, Parser, Subcommand};
 
 use crate::args::import_args::ImportArgs;
 pub(super) use crate::args::init_args::InitArgs;
 pub(super) use crate::args::lot_args::CompareLotArgs;
 pub(super) use crate::args::page_args::{ServeArgs, WorkbenchArgs};
+pub(super) use crate::args::sampled_args::{CompareArgs, MergeArgs, SampledArgs, SimulateArgs};
 use crate::args::shared_args::OUTPUT;
 pub(super) use crate::args::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
 use crate::commands::examples::ExamplesArgs;
 use crate::commands::journal::JournalArgs;
 use crate::table::TableArgs;
 pub(super) use crate::values::{
-    CostArg, DerivativesArg, MaximiseArg, MethodArg, MinimiseArg, Over, Place, SamplerArg, SensitivitiesArg, StackArg,
-    StencilArg,
+    CostArg, DerivativesArg, MaximiseArg, MinimiseArg, Over, Place, SamplerArg, SensitivitiesArg, StackArg, StencilArg,
 };
 use crate::values::{
-    Movable, count, finite, movable, over, part, place, positive, probability, samples, samples_or_none, whole,
-    workbook,
+    Movable, count, finite, movable, over, place, positive, probability, samples_or_none, whole, workbook,
 };
 
 /// The program in one sentence, as in the README.
@@ -76,9 +76,7 @@ pub(super) enum Command {
     ///
     /// Each process draws its own points by `sensitol simulate --shards K --shard k -o FILE`. The points of all shards are those of one run
     /// with the same seed. A shard that is missing is an error, and one that is given twice counts once.
-    #[command(
-        after_help = "Examples:\n  sensitol simulate examples/first-study/study.toml --samples 1000000 --shards 2 --shard 1 -o 1.json\n  sensitol simulate examples/first-study/study.toml --samples 1000000 --shards 2 --shard 2 -o 2.json\n  sensitol merge examples/first-study/study.toml 1.json 2.json"
-    )]
+    #[command(after_help = "Examples:\n  sensitol merge examples/first-study/study.toml shard-*.json --html page.html")]
     Merge(MergeArgs),
     /// Every method that fits, against a reference: speed and accuracy
     #[command(after_help = "Examples:\n  sensitol compare examples/stacked-blocks/study.toml --svg trade.svg")]
@@ -272,153 +270,6 @@ pub(super) struct AnalyzeArgs {
 
     #[command(flatten)]
     pub(super) table: TableArgs,
-
-    #[command(flatten)]
-    pub(super) output: OutputArgs,
-}
-
-/// A study of which points are drawn.
-#[derive(Debug, Args)]
-pub(super) struct SampledArgs {
-    /// The study, a .toml or .json file
-    pub(super) study: PathBuf,
-
-    /// Ask for this characteristic only (repeatable)
-    #[arg(long = "characteristic", alias = "kc", value_name = "NAME")]
-    pub(super) characteristics: Vec<String>,
-
-    /// The nominal values and constants of this one of the study's [configurations]
-    #[arg(long, value_name = "NAME")]
-    pub(super) configuration: Option<String>,
-
-    /// Seed of what is drawn [default: that of the study, or 1]
-    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
-    pub(super) seed: Option<u64>,
-
-    #[command(flatten)]
-    pub(super) work: WorkArgs,
-
-    /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(super) threads: Option<u16>,
-}
-
-#[derive(Debug, Args)]
-#[group(skip)]
-#[command(group = ArgGroup::new("surrogate").args(["surrogate_control", "rare"]))]
-pub(super) struct SimulateArgs {
-    #[command(flatten)]
-    pub(super) of: SampledArgs,
-
-    /// Points [default: 100000, or as many as --target-error takes; with --rare 10000, of an external model 1000]; Sobol' takes 16 times a power of two, at least as many
-    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
-    pub(super) samples: Option<u64>,
-
-    /// How points are drawn: random, or sobol for scrambled Sobol' points
-    #[arg(long, value_name = "SAMPLER", default_value = "random")]
-    pub(super) sampler: SamplerArg,
-
-    /// Draw points until the standard error of every sigma (with --rare: of every probability) is below this part of it
-    #[arg(long = "target-error", alias = "until", value_name = "R", value_parser = part, allow_negative_numbers = true)]
-    pub(super) until: Option<f64>,
-
-    /// Draw points until half the 95 % interval of every yield is below this
-    #[arg(long = "target-yield-error", alias = "until-yield", value_name = "R", value_parser = part, allow_negative_numbers = true)]
-    pub(super) until_yield: Option<f64>,
-
-    /// Sample only what the surrogate of an analysis leaves unexplained (control variate): the same standard errors with fewer points
-    #[arg(long = "control-variate", alias = "surrogate-control")]
-    pub(super) surrogate_control: bool,
-
-    /// Sobol' indices of every input too, by exchanging inputs: n (N + 2) evaluations more for N inputs, with n = --samples [default: 16384]
-    #[arg(long, conflicts_with = "rare")]
-    pub(super) sobol: bool,
-
-    /// Most evaluations of --sobol [default: 10000 of an external model]
-    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true, requires = "sobol")]
-    pub(super) budget: Option<u64>,
-
-    /// The probability beyond each limit, small or not, by importance sampling that is placed with the surrogate
-    #[arg(long, conflicts_with_all = ["surrogate_control", "until_yield", "sampler"])]
-    pub(super) rare: bool,
-
-    /// The method of the surrogate [default: that of the study, or full to 20 dimensions and six-n beyond]
-    #[arg(short, long, value_name = "METHOD", requires = "surrogate")]
-    pub(super) method: Option<MethodArg>,
-
-    /// Number of processes that share the points, each with a --shard of its own; `sensitol merge` joins their results
-    #[arg(long, value_name = "K", value_parser = whole, allow_negative_numbers = true, requires = "shard", conflicts_with_all = ["rare", "sobol", "surrogate_control", "until", "until_yield", "check", "html", "csv"])]
-    pub(super) shards: Option<u64>,
-
-    /// Number of this process, from 1 to --shards: its sums are written as JSON, for `sensitol merge`
-    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true, requires = "shards")]
-    pub(super) shard: Option<u64>,
-
-    /// Exit with 1 unless the sample shows that every target_yield is met
-    #[arg(long)]
-    pub(super) check: bool,
-
-    /// Write the report as one HTML page
-    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
-    pub(super) html: Option<PathBuf>,
-
-    /// Write estimates and histogram as CSV files into DIR, which is made where it is missing
-    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
-    pub(super) csv: Option<PathBuf>,
-
-    #[command(flatten)]
-    pub(super) output: OutputArgs,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct MergeArgs {
-    #[command(flatten)]
-    pub(super) of: SampledArgs,
-
-    /// Files of all shards, in any order
-    #[arg(value_name = "SHARD.json", required = true)]
-    pub(super) shards: Vec<PathBuf>,
-
-    /// Exit with 1 unless the sample shows that every target_yield is met
-    #[arg(long)]
-    pub(super) check: bool,
-
-    /// Write the report as one HTML page
-    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
-    pub(super) html: Option<PathBuf>,
-
-    /// Write estimates and histogram as CSV files into DIR, which is made where it is missing
-    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
-    pub(super) csv: Option<PathBuf>,
-
-    #[command(flatten)]
-    pub(super) output: OutputArgs,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct CompareArgs {
-    #[command(flatten)]
-    pub(super) of: SampledArgs,
-
-    /// Most evaluations of one method
-    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
-    pub(super) budget: Option<usize>,
-
-    /// Points of the reference [default: 1048576, or 2000 of an external model]
-    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
-    pub(super) samples: Option<u64>,
-
-    /// Write the report as one HTML page
-    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
-    pub(super) html: Option<PathBuf>,
-
-    /// Write the table as comparison.csv into DIR, which is made where it is missing
-    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
-    pub(super) csv: Option<PathBuf>,
-
-    /// Draw evaluations against error
-    #[arg(long, value_name = "FILE.svg", help_heading = OUTPUT)]
-    pub(super) svg: Option<PathBuf>,
 
     #[command(flatten)]
     pub(super) output: OutputArgs,

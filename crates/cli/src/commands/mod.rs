@@ -23,7 +23,6 @@ pub(crate) mod reference;
 pub(crate) mod schema;
 pub(crate) mod serve;
 pub(crate) mod several;
-pub(crate) mod shard;
 pub(crate) mod simulate;
 pub(crate) mod sweep;
 pub(crate) mod watch;

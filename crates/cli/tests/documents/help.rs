@@ -63,7 +63,9 @@ fn every_command_refuses_what_is_wrong() {
     let wrong: &[&[&str]] = &[
         &["analyze", "nowhere.toml"],
         &["simulate", "nowhere.toml"],
+        &["merge", "examples/stacked-blocks/study.toml", "nowhere.json"],
         &["compare", "nowhere.toml"],
+        &["compare-lot", "examples/housing-lot/study.toml", "nowhere.csv"],
         &["sweep", "examples/stacked-blocks/study.toml"],
         &["allocate", "nowhere.toml"],
         &["plan", "nowhere.toml"],

@@ -56,8 +56,14 @@ pub fn study_file() -> String {
     page.text.trim_end().to_owned() + "\n"
 }
 
+/// Section that is not written by hand: plain studies keep the contacts of joints by it.
+const WRITTEN_BY_EXPAND: &str = "contacts";
+
 /// Lists at most three examples that have this section.
 fn in_use(section: &str) -> String {
+    if section == WRITTEN_BY_EXPAND {
+        return "Written by `sensitol expand`.\n\n".to_owned();
+    }
     let mut studies = example_studies();
     // The main study of an example comes before its variants.
     studies.sort_by_key(|(folder, path)| (folder.clone(), !path.ends_with("study.toml"), path.clone()));

@@ -315,9 +315,12 @@ fn a_full_disk_is_an_error_that_loses_nothing() {
     let script = format!("trap '' XFSZ; ulimit -f 100; exec {}", line.join(" "));
     let full = Command::new("sh").args(["-c", &script]).output().unwrap();
     let error = String::from_utf8_lossy(&full.stderr).into_owned();
-    // Without kept answers there is no result: one line names the cause.
+    // Without kept answers there is no result: one line names the cause, and JSON has it as the only error.
     assert_eq!(full.status.code(), Some(2), "{error}");
-    assert!(full.stdout.is_empty(), "{}", String::from_utf8_lossy(&full.stdout));
+    let report: serde_json::Value = serde_json::from_slice(&full.stdout).unwrap();
+    let codes: Vec<&str> =
+        report["errors"].as_array().unwrap().iter().map(|one| one["code"].as_str().unwrap()).collect();
+    assert_eq!((codes, report.get("characteristics")), (vec!["not-kept"], None));
     assert!(error.contains("disk") && error.contains("the same command goes on from there"), "{error}");
     assert_eq!(error.trim_end().lines().count(), 1, "{error}");
     assert!(study.evaluations() < 24 + 132);

@@ -1,7 +1,7 @@
 //! Cells of the band, each with a bound of the share within the limits that holds at all of its points.
 
 use crate::distribution_bounds::simplex::{Column, Solution};
-use crate::distribution_bounds::{ConditionalYield, DistributionPromise};
+use crate::distribution_bounds::{DistributionPromise, YieldAtValue};
 
 /// Number of cells at the beginning: an isolated limit is found by bounds, not by chance.
 const BEGIN: usize = 64;
@@ -11,7 +11,7 @@ const SLICES: u32 = 256;
 /// Cells in order, with a bound each.
 pub(super) struct Cells<'c> {
     promise: &'c DistributionPromise,
-    within: &'c dyn ConditionalYield,
+    within: &'c dyn YieldAtValue,
     sign: f64,
     /// Ends of the cells, ascending.
     ends: Vec<f64>,
@@ -21,12 +21,7 @@ pub(super) struct Cells<'c> {
 
 impl<'c> Cells<'c> {
     /// Divides the range into equal cells, and at a mean that keeps the promise.
-    pub(super) fn new(
-        promise: &'c DistributionPromise,
-        within: &'c dyn ConditionalYield,
-        sign: f64,
-        mean: f64,
-    ) -> Self {
+    pub(super) fn new(promise: &'c DistributionPromise, within: &'c dyn YieldAtValue, sign: f64, mean: f64) -> Self {
         let [low, high] = promise.range();
         let mut ends: Vec<f64> = (0..=BEGIN).map(|end| low + (high - low) * end as f64 / BEGIN as f64).collect();
         // A distribution at this mean alone keeps every promise: the program begins with it.

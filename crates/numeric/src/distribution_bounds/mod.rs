@@ -38,7 +38,7 @@ const MOST: usize = 60_000;
 const MEANS: u32 = 32;
 
 /// Share within the limits as a function of one input, with bounds over an interval of it.
-pub trait ConditionalYield {
+pub trait YieldAtValue {
     /// Share at a value of the input.
     fn at(&self, x: f64) -> f64;
 
@@ -72,7 +72,7 @@ pub struct YieldBounds {
 /// assert!((found.certified[0] - 0.75).abs() < 1e-5 && found.certified[1] == 1.0);
 /// # Ok::<(), sensitol_numeric::distribution_bounds::PromiseFault>(())
 /// ```
-pub fn yield_bounds(promise: &DistributionPromise, within: &dyn ConditionalYield) -> YieldBounds {
+pub fn yield_bounds(promise: &DistributionPromise, within: &dyn YieldAtValue) -> YieldBounds {
     let [least, greatest] = [1.0, -1.0].map(|sign| end(promise, within, sign));
     YieldBounds {
         certified: [least.certified.max(0.0), (-greatest.certified).min(1.0)],
@@ -88,7 +88,7 @@ struct End {
     points: Vec<[f64; 2]>,
 }
 
-fn end(promise: &DistributionPromise, within: &dyn ConditionalYield, sign: f64) -> End {
+fn end(promise: &DistributionPromise, within: &dyn YieldAtValue, sign: f64) -> End {
     let [low, high] = promise.means();
     let ranges: Vec<[f64; 2]> = match promise.sigma().filter(|_| high > low) {
         None => vec![[low, high]],
@@ -116,7 +116,7 @@ fn end(promise: &DistributionPromise, within: &dyn ConditionalYield, sign: f64) 
 }
 
 /// End with the mean in a range.
-fn of_range(promise: &DistributionPromise, within: &dyn ConditionalYield, sign: f64, range: [f64; 2]) -> End {
+fn of_range(promise: &DistributionPromise, within: &dyn YieldAtValue, sign: f64, range: [f64; 2]) -> End {
     let mut cells = Cells::new(promise, within, sign, f64::midpoint(range[0], range[1]));
     let programme = Programme::of(promise, range);
     let mut found = End { certified: f64::MIN, attained: f64::MAX, points: Vec::new() };
@@ -165,7 +165,7 @@ impl LinearYield<'_> {
     }
 }
 
-impl ConditionalYield for LinearYield<'_> {
+impl YieldAtValue for LinearYield<'_> {
     fn at(&self, x: f64) -> f64 {
         let [below, above] = self.rejects(self.slope * x + self.offset);
         1.0 - below - above

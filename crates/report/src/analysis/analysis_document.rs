@@ -191,6 +191,13 @@ impl Report {
     }
 }
 
+/// Remark of figures without verification. Errors of a surface that is not proven are conditional.
+fn not_verified(estimate: Option<&ErrorEstimate>) -> String {
+    let proven = |of: &ErrorEstimate| matches!(of.sources[..], [ErrorSource::Proven { .. }]);
+    let conditional = estimate.is_some_and(|of| !proven(of));
+    format!("not verified by the model{}", if conditional { ": errors hold if the surface does" } else { "" })
+}
+
 /// Sections of the report of a characteristic.
 pub(crate) trait CharacteristicSections {
     /// Adds the verification of the figures and the basis of their error estimates.
@@ -234,12 +241,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
         match &self.evidence.verification {
             Some(found) => section.note(found.words()),
             // No remark if there are no moments, or if nothing that varies has an effect.
-            None if self.mean().is_some() && !self.constant => {
-                let proven = |of: &ErrorEstimate| matches!(of.sources[..], [ErrorSource::Proven { .. }]);
-                let conditional = self.error_estimate.as_ref().is_some_and(|of| !proven(of));
-                let condition = if conditional { ": errors hold if the surface does" } else { "" };
-                section.note(format!("not verified by the model{condition}"));
-            }
+            None if self.mean().is_some() && !self.constant => section.note(not_verified(self.error_estimate.as_ref())),
             None => {}
         }
         let mut detail = Vec::new();

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::compensator_fault::CompensatorFault;
 use crate::entries::adjust_entry::{AdjustEntry, MotionEntry};
 use crate::entries::file::{CharacteristicEntry, StudyFile};
 use crate::entries::spanned::Spanned;
 use crate::error::{Fault, Faults, StudyFault, fault};
+use crate::faults::compensator_fault::CompensatorFault;
 use crate::source::Source;
 use sensitol::assembly::{Adjustment, AssemblyFunction, Composite, Motion, MotionEnd, MotionExtremes, StockResponse};
 use sensitol::problem::Problem;

@@ -8,8 +8,8 @@ use super::entry::{ZONES, ZoneKind, ZonedFeature};
 use super::lines::{Lines, MadeZone};
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::expand::{Tree, Value, ZonePlace};
+use crate::faults::zone_fault::ZoneFault;
 use crate::tree::Key;
-use crate::zone_fault::ZoneFault;
 
 /// A line of `[costs]` for a zone.
 pub(super) struct ZoneCost {

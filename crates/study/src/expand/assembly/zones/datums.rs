@@ -9,8 +9,8 @@ use super::frame::{ConstantFrame, cross, dot, number, unit};
 use super::lines::{Extent, Lines, at};
 use crate::error::{Fault, StudyFault};
 use crate::expand::{Tree, Value, quoted};
+use crate::faults::zone_fault::ZoneFault;
 use crate::scene::OpenZone;
-use crate::zone_fault::ZoneFault;
 use sensitol_numeric::names::nearest;
 use sensitol_spatial::FeatureKind;
 

@@ -14,8 +14,8 @@ mod torsor;
 
 use crate::error::{Fault, Faults, StudyFault};
 use crate::expand::{Expanded, Tree, Value};
+use crate::faults::zone_fault::ZoneFault;
 use crate::tree::Key;
-use crate::zone_fault::ZoneFault;
 use deviation::Torsor;
 use entry::{MORE, ZONES, ZoneKind, ZonedFeature};
 use lines::{LineOwners, Lines, at};

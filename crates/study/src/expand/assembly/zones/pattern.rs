@@ -11,8 +11,8 @@ use super::torsor::SHARED;
 use crate::error::{Fault, StudyFault, fault};
 use crate::expand::assembly::unknown_key;
 use crate::expand::{Tree, Value, wrong_type};
+use crate::faults::zone_fault::ZoneFault;
 use crate::tree::Key;
-use crate::zone_fault::ZoneFault;
 use sensitol_numeric::names::nearest;
 use sensitol_spatial::FeatureKind;
 

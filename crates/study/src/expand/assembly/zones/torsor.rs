@@ -16,8 +16,8 @@ use super::frame::ConstantFrame;
 use super::lines::{Band, Extent, LineUnit, Lines, Owner, at, key, number, text};
 use crate::error::{Fault, StudyFault};
 use crate::expand::{Tree, Value, quoted};
+use crate::faults::zone_fault::ZoneFault;
 use crate::tree::Key;
-use crate::zone_fault::ZoneFault;
 use sensitol_spatial::FeatureKind;
 
 /// Facts from the datums of a feature about its deviation.

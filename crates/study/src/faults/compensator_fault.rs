@@ -89,7 +89,7 @@ pub enum CompensatorFault {
     GivenCircle {
         /// The characteristic.
         characteristic: String,
-        /// Its condition, which leads back to it.
+        /// Condition that leads back to the characteristic.
         given: String,
     },
     /// A condition without limits.

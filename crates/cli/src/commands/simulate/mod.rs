@@ -1,10 +1,12 @@
 //! `sensitol simulate`.
 
+pub(crate) mod shard;
+
 use std::path::Path;
 
 use crate::args::shared_args::OutputArgs;
 use crate::args::{SamplerArg, SimulateArgs};
-use crate::commands::{rare, shard};
+use crate::commands::rare;
 use crate::csv::CsvFolder;
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
