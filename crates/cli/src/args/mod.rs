@@ -104,7 +104,7 @@ pub(super) enum Command {
     Plan(PlanArgs),
     /// Validates studies; evaluates nothing
     ///
-    /// Nothing is evaluated or executed. Every one is validated, whatever is wrong with another; the exit code is 2 when one is wrong.
+    /// Nothing is evaluated or executed. Each study is validated, even if another has errors; the exit code is 2 if one has.
     /// With --json each has its errors with line, column and advice; several studies give one array.
     #[command(
         after_help = "Examples:\n  sensitol check examples/stacked-blocks/study.toml\n  sensitol check examples/stacked-blocks/study.toml examples/engine-balance/study.toml"

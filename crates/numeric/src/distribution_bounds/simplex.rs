@@ -31,7 +31,7 @@ pub(super) struct Programme {
     mean: [f64; 2],
     /// Greatest second moment about the origin. None if it is not bounded.
     second: Option<f64>,
-    /// Form of the mixture: moments of a point, of a pair, or of a uniform distribution.
+    /// Component of the mixture: a point, a pair, or a uniform distribution, by its moments.
     form: MixtureForm,
 }
 

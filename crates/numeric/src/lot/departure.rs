@@ -16,7 +16,7 @@ const CUT_STEPS: usize = 400;
 /// Fewest values with a name.
 const FEWEST: usize = 15;
 
-/// Likeliest form of values that are not normal.
+/// Most likely shape of values that are not normal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]

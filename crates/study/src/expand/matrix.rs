@@ -97,8 +97,10 @@ fn read(tree: &Tree, file: &str, span: &Range<usize>, data: &mut Data<'_>) -> Re
         column: Some(column.to_owned()),
         problem: Box::new(problem),
     };
-    if let Some(place) = (1..names.len()).find(|&place| names[..place].contains(&names[place])) {
-        let twice = DataProblem::ColumnTwice { name: names[place].clone() };
+    // Two columns of one input would be added, whatever their units are.
+    let same = |a: &String, b: &String| split(a).0 == split(b).0;
+    if let Some(place) = (1..names.len()).find(|&place| names[..place].iter().any(|name| same(name, &names[place]))) {
+        let twice = DataProblem::ColumnTwice { name: split(&names[place]).0.to_owned() };
         return Err(at(DataFault { column: None, ..problem(None, "", twice) }));
     }
     let texts = |data: &mut Data<'_>, name: &str| {

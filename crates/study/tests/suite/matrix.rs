@@ -83,6 +83,8 @@ fn wrong_matrices_are_said() {
         ("output,y0,nominal,shim\ngap,0,0,1\nsag,0,0,0\n", &["`y0` and `nominal` are two columns"]),
         ("output,y0,shim\ngap,0,1\ngap,0,0\n", &["line 3", "the output `gap` stands in line 2 already"]),
         ("output,y0,shim,shim\ngap,0,1,1\nsag,0,0,1\n", &["the column `shim` stands twice"]),
+        ("output,y0,shim [mm],shim [um]\ngap,0,1,1\nsag,0,0,1\n", &["the column `shim` stands twice"]),
+        ("output,y0,shim [mm],shim\ngap,0,1,1\nsag,0,0,1\n", &["the column `shim` stands twice"]),
         ("output,y0,shim\ngapp,0,1\nsag,0,1\n", &["no row of the matrix `gap`", "did you mean `gapp`?"]),
         ("output,y0,shim\ngap,0,1\ntwice,0,1\n", &["the name `twice` is taken"]),
         ("output,y0,shim\ngap,0,x\nsag,0,1\n", &["column `shim`: `x` is not a number"]),

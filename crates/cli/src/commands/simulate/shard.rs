@@ -75,6 +75,10 @@ pub(crate) fn merge(asked: &MergeArgs, look: Look) -> Result<Exit, Failure> {
         if file.configuration != asked.of.configuration {
             return Err(other("configuration of the study"));
         }
+        if let Some(seed) = asked.of.seed.filter(|&seed| seed != file.sums.seed) {
+            let reason = format!("its points have the seed {}, not {seed}: leave --seed out", file.sums.seed);
+            return Err(Failure::Shard { path: path.clone(), reason });
+        }
         sums.push(file.sums);
     }
     let reported = Reported::open(&mut files, &asked.output, asked.csv.as_deref(), asked.html.as_deref(), false)?;
