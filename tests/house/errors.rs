@@ -42,9 +42,11 @@ fn every_error_of_the_library_becomes_the_one() {
         sensitol::fits::FitError,
         sensitol::inspection::InspectionError,
         sensitol::UnknownName,
+        sensitol::lot::LotError,
         sensitol::pearson::PearsonError,
         sensitol::rare::RareError,
         sensitol::simulation::SamplingError,
+        sensitol::simulation::ShardError,
         sensitol::simulation::SimulationError,
         sensitol::sweep::SweepError,
     ];

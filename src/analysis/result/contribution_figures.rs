@@ -22,7 +22,7 @@ pub struct ContributionFigures {
     pub examined_interactions: usize,
     /// Share of the variance that no contribution explains. None if it is unknown.
     pub left_out_share: Option<f64>,
-    /// Source of the Sobol' indices of the [sensitivities](crate::analysis::CharacteristicAnalysis::sensitivities). None if the characteristic does not vary.
+    /// Source of the Sobol' indices of the `sensitivities`. None if the characteristic does not vary.
     #[serde(rename = "sobol")]
     pub indices: Option<SobolIndices>,
 }

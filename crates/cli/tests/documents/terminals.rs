@@ -139,6 +139,7 @@ fn no_command_obeys_a_name() {
         &["check", &file, "good.toml", HOSTILE],
         &["models", HOSTILE],
         &["init", HOSTILE],
+        &["examples", "copy", HOSTILE],
         &["schema", "-o", HOSTILE],
         &["schema", &option],
         &["pearson", "--skewness", HOSTILE, "--kurtosis", "3"],
