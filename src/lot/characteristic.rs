@@ -3,10 +3,11 @@
 use serde::Serialize;
 
 use crate::analysis::{Analysis, CharacteristicAnalysis};
-use crate::lot::{DimensionInLot, LotError, LotTable};
+use crate::lot::{CorrelationInLot, DimensionInLot, LotError, LotTable};
 use crate::problem::Problem;
 use sensitol_numeric::lot::{
-    LotFigure, LotSample, LotTest, PredictedVariance, compare_means, compare_spreads, predicted_yield_interval,
+    LotFigure, LotSample, LotTest, MeasuredPair, MeasuredPart, PredictedVariance, compare_means, compare_spreads,
+    predicted_yield_interval,
 };
 use sensitol_numeric::sampling::clopper_pearson;
 
@@ -131,27 +132,36 @@ impl CharacteristicInLot {
 
 /// Compares every characteristic.
 pub(super) fn compared(
-    problem: &Problem,
     tables: &[LotTable],
     [assumed, by_parts]: [&Analysis; 2],
-    dimensions: &[DimensionInLot],
+    measured: &MeasuredLot<'_>,
 ) -> Result<Vec<CharacteristicInLot>, LotError> {
     let pairs = assumed.characteristics.iter().zip(&by_parts.characteristics);
-    pairs.map(|(assumed, by_parts)| one(problem, tables, [assumed, by_parts], dimensions)).collect()
+    pairs.map(|(assumed, by_parts)| one(tables, [assumed, by_parts], measured)).collect()
+}
+
+/// Measured dimensions with their correlations, and the problem with them.
+pub(super) struct MeasuredLot<'l> {
+    /// Problem with the measured parts.
+    pub(super) problem: &'l Problem,
+    /// Measured dimensions.
+    pub(super) dimensions: &'l [DimensionInLot],
+    /// All pairs of the measured dimensions.
+    pub(super) correlations: &'l [CorrelationInLot],
+    /// Family-wise level.
+    pub(super) level: f64,
 }
 
 fn one(
-    problem: &Problem,
     tables: &[LotTable],
     [assumed, by_parts]: [&CharacteristicAnalysis; 2],
-    dimensions: &[DimensionInLot],
+    lot: &MeasuredLot<'_>,
 ) -> Result<CharacteristicInLot, LotError> {
     let characteristic = &assumed.characteristic;
     let name = characteristic.name().to_owned();
     let limits = [characteristic.limits().lower(), characteristic.limits().upper()];
-    let variance = variance(problem, by_parts, dimensions);
-    let known =
-        PredictedVariance { measured: Vec::new(), assumed: assumed.moments.map_or(f64::NAN, |of| of.variance()) };
+    let variance = variance(lot.problem, by_parts, lot.dimensions, lot.correlations, lot.level);
+    let known = PredictedVariance::known(assumed.moments.map_or(f64::NAN, |of| of.variance()));
     let columns = tables.iter().flat_map(|table| &table.columns).find(|column| column.name == name);
     let values: Option<Vec<f64>> = columns.map(|column| column.values.iter().copied().flatten().collect());
     let measured = match &values {
@@ -163,11 +173,11 @@ fn one(
         }
     };
     let tests = |moments: Option<sensitol_numeric::moments::Moments>, variance: &PredictedVariance| {
-        let (measured, mean) = (measured.as_ref()?, moments?.mean());
-        Some([compare_means(measured, mean, variance), compare_spreads(measured, variance)])
+        let (measured, moments) = (measured.as_ref()?, moments?);
+        Some([compare_means(measured, moments.mean(), variance), compare_spreads(measured, variance, 0.0)])
     };
     let (against_assumed, against_parts) = (tests(assumed.moments, &known), tests(by_parts.moments, &variance));
-    let differences = differences([assumed, by_parts], dimensions);
+    let differences = differences([assumed, by_parts], lot.dimensions);
     let left = |total: Option<f64>, part: fn(&DifferenceShare) -> Option<f64>| {
         Some(total? - differences.iter().map(part).sum::<Option<f64>>()?)
     };
@@ -190,17 +200,49 @@ fn one(
     })
 }
 
-/// Variance of the prediction by the parts: what each measured dimension explains alone, and all else.
-fn variance(problem: &Problem, analysis: &CharacteristicAnalysis, dimensions: &[DimensionInLot]) -> PredictedVariance {
-    let total = analysis.moments.map_or(f64::NAN, |of| of.variance());
-    let part = |one: &DimensionInLot| {
-        let place = problem.dimensions().iter().position(|of| of.name() == one.name)?;
-        let explained = explained(analysis, place)?;
-        (explained > 0.0).then_some((explained * total, one.parts))
-    };
-    let measured: Vec<(f64, usize)> = dimensions.iter().filter_map(part).collect();
-    let explained: f64 = measured.iter().map(|(variance, _)| variance).sum();
-    PredictedVariance { assumed: (total - explained).max(0.0), measured }
+/// Variance of the prediction by the parts, with the uncertainty of the numbers of measured parts. `problem` is that of the measured parts.
+fn variance(
+    problem: &Problem,
+    analysis: &CharacteristicAnalysis,
+    dimensions: &[DimensionInLot],
+    correlations: &[CorrelationInLot],
+    level: f64,
+) -> PredictedVariance {
+    let Some(total) = analysis.moments.map(|of| of.variance()) else { return PredictedVariance::known(f64::NAN) };
+    let correlation = |a: usize, b: usize| problem.correlation().map_or(0.0, |of| of.of(a, b));
+    let in_block = |place: usize| problem.correlation().is_some_and(|of| of.block_of(place).is_some());
+    let (mut parts, mut places): (Vec<MeasuredPart>, Vec<usize>) = (Vec::new(), Vec::new());
+    for one in dimensions {
+        let place = problem.dimensions().iter().position(|of| of.name() == one.name);
+        let Some(place) = place.filter(|place| !in_block(*place)) else { continue };
+        let Some(of) = analysis.sensitivities.get(place) else { continue };
+        let law = problem.dimensions()[place].distribution();
+        let excess = law.map_or(0.0, |law| law.standard_moments().kurtosis() - 3.0);
+        let joined = (0..problem.dimensions().len()).any(|other| other != place && correlation(place, other) != 0.0);
+        // The share of a correlated dimension has that of its partners in it, and may be negative.
+        let effect = match (joined, of.linear_share, of.first) {
+            (false, Some(share), first) => Some((share.max(0.0) * total).sqrt().copysign(first.unwrap_or(1.0))),
+            (_, _, first) => first.map(|first| first * one.sigma.value),
+        };
+        let Some(effect) = effect else { continue };
+        let curvature = of.curvature_share.unwrap_or(0.0).max(0.0) * total;
+        parts.push(MeasuredPart { effect, curvature, count: one.parts, excess });
+        places.push(place);
+    }
+    let mut pairs: Vec<MeasuredPair> = Vec::new();
+    for (a, first) in places.iter().enumerate() {
+        for (b, second) in places.iter().enumerate().skip(a + 1) {
+            let value = correlation(*first, *second);
+            let names = [first, second].map(|place| problem.dimensions()[*place].name());
+            let found = correlations.iter().find(|of| of.between.iter().all(|name| names.contains(&name.as_str())));
+            if value != 0.0 {
+                let estimated = found.is_some_and(|found| found.test.refutes(level));
+                let rows = found.map_or(0, |found| found.rows);
+                pairs.push(MeasuredPair { parts: [a, b], correlation: value, estimated, rows });
+            }
+        }
+    }
+    PredictedVariance::of(total, &parts, &pairs)
 }
 
 /// Share of the variance that a dimension explains alone.

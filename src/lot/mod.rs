@@ -168,7 +168,13 @@ pub fn compare_lot(
     family::adjust(&mut dimensions, &mut correlations, &mut []);
     let with_parts = measured_problem::with_parts(problem, &dimensions, &correlations, options.level)?;
     let by_parts = analyze_with(&with_parts, method, run)?;
-    let mut characteristics = characteristic::compared(problem, tables, [&assumed, &by_parts], &dimensions)?;
+    let lot = characteristic::MeasuredLot {
+        problem: &with_parts,
+        dimensions: &dimensions,
+        correlations: &correlations,
+        level: options.level,
+    };
+    let mut characteristics = characteristic::compared(tables, [&assumed, &by_parts], &lot)?;
     let tests = family::adjust(&mut dimensions, &mut correlations, &mut characteristics);
     for one in &mut characteristics {
         one.judge(options.level);

@@ -72,10 +72,7 @@ impl LotSample {
     ///
     /// Source: G. E. P. Box, Non-normality and tests on variances, Biometrika 40 (1953).
     pub fn freedom(&self, excess: f64) -> f64 {
-        let n = self.count() as f64;
-        // A kurtosis is at least 1, so the excess is at least -2, for which the sum would be below 0.
-        let part = 2.0 / (n - 1.0) + excess.max(-1.9) / n;
-        if excess.is_finite() && part > 0.0 { 2.0 / part } else { n - 1.0 }
+        box_freedom(self.count() as f64, excess)
     }
 
     /// Mean with its 95 % interval by Student's distribution.
@@ -113,4 +110,11 @@ impl LotSample {
             shape: shape.flatten().map(LotTest::of),
         }
     }
+}
+
+/// Degrees of freedom of the variance of `n` values with this excess kurtosis.
+pub(super) fn box_freedom(n: f64, excess: f64) -> f64 {
+    // A kurtosis is at least 1, so the excess is at least -2, for which the sum would be below 0.
+    let part = 2.0 / (n - 1.0) + excess.max(-1.9) / n;
+    if excess.is_finite() && part > 0.0 { 2.0 / part } else { n - 1.0 }
 }

@@ -20,7 +20,9 @@ pub use components::{GroupComparison, compare_groups};
 pub use departure::{Departure, likeliest_departure};
 pub use pair::{CorrelationEstimate, correlation_estimate};
 pub use posterior::{NormalPrior, Posterior};
-pub use prediction::{PredictedVariance, compare_means, compare_spreads, predicted_yield_interval};
+pub use prediction::{
+    MeasuredPair, MeasuredPart, PredictedVariance, compare_means, compare_spreads, predicted_yield_interval,
+};
 pub use process_capability::{ProcessPerformance, performance};
 pub use reference_law::{chi_squared_quantile, fisher_quantile, fisher_sf, student_two_sided};
 pub use shape::{anderson_darling_normal, cramer_von_mises_of_shape};

@@ -4,9 +4,9 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol_numeric::distribution::{Distribution, Normal, Uniform, standard_normal};
 use sensitol_numeric::lot::{
-    Departure, LotSample, LotTest, NormalPrior, PredictedVariance, anderson_darling_normal, compare_groups,
-    compare_means, compare_spreads, correlation_estimate, cramer_von_mises_of_shape, fisher_quantile, fisher_sf, holm,
-    likeliest_departure, linear_trend, performance,
+    Departure, LotSample, LotTest, MeasuredPart, NormalPrior, PredictedVariance, anderson_darling_normal,
+    compare_groups, compare_means, compare_spreads, correlation_estimate, cramer_von_mises_of_shape, fisher_quantile,
+    fisher_sf, holm, likeliest_departure, linear_trend, performance,
 };
 use sensitol_testing::{close, data};
 
@@ -80,9 +80,10 @@ fn correlations_groups_and_families_are_those_of_scipy() {
 fn a_prediction_from_one_sample_is_a_comparison_of_two() {
     let case = &data("lot.json")["prediction"];
     let (part, own) = (column(&case["part"]), column(&case["own"]));
-    let variance = PredictedVariance { measured: vec![(part.sigma().powi(2), part.count())], assumed: 0.0 };
+    let measured = MeasuredPart { effect: part.sigma(), curvature: 0.0, count: part.count(), excess: 0.0 };
+    let variance = PredictedVariance::of(part.sigma().powi(2), &[measured], &[]);
     close(compare_means(&own, part.mean(), &variance).p, case["welch"].as_f64().unwrap(), 1e-9, 1e-9);
-    close(compare_spreads(&own, &variance).p, case["fisher"].as_f64().unwrap(), 1e-9, 1e-9);
+    close(compare_spreads(&own, &variance, 0.0).p, case["fisher"].as_f64().unwrap(), 1e-9, 1e-9);
 }
 
 /// The grid of the oracle leaves 1e-3 of a sigma.
