@@ -9,6 +9,7 @@ use sensitol_numeric::lot::{
     LotFigure, LotSample, LotTest, MeasuredPair, MeasuredPart, PredictedVariance, compare_means, compare_spreads,
     predicted_yield_interval,
 };
+use sensitol_numeric::moments::Moments;
 use sensitol_numeric::sampling::clopper_pearson;
 
 /// A characteristic as predicted twice and as measured.
@@ -172,32 +173,36 @@ fn one(
             Some(LotSample::new(values).ok_or_else(equal)?)
         }
     };
-    let tests = |moments: Option<sensitol_numeric::moments::Moments>, variance: &PredictedVariance| {
+    let tests = |moments: Option<Moments>, variance: &PredictedVariance| {
         let (measured, moments) = (measured.as_ref()?, moments?);
-        Some([compare_means(measured, moments.mean(), variance), compare_spreads(measured, variance, 0.0)])
+        let spreads = compare_spreads(measured, variance, excess(Some(moments)));
+        Some([compare_means(measured, moments.mean(), variance), spreads])
     };
     let (against_assumed, against_parts) = (tests(assumed.moments, &known), tests(by_parts.moments, &variance));
     let differences = differences([assumed, by_parts], lot.dimensions);
     let left = |total: Option<f64>, part: fn(&DifferenceShare) -> Option<f64>| {
         Some(total? - differences.iter().map(part).sum::<Option<f64>>()?)
     };
-    let change = |of: fn(&sensitol_numeric::moments::Moments) -> f64| {
-        Some(of(by_parts.moments.as_ref()?) - of(assumed.moments.as_ref()?))
-    };
+    let change = |of: fn(&Moments) -> f64| Some(of(by_parts.moments.as_ref()?) - of(assumed.moments.as_ref()?));
     Ok(CharacteristicInLot {
         unit: characteristic.unit().map(str::to_owned),
         limits,
         assumed: PredictedFigures::of(assumed, None),
         by_parts: PredictedFigures::of(by_parts, Some(&variance)),
-        assemblies: measured.map(|column| MeasuredAssemblies::of(&column, limits)),
+        assemblies: measured.map(|column| MeasuredAssemblies::of(&column, limits, excess(by_parts.moments))),
         against_assumed,
         against_parts,
-        mean_remainder: left(change(sensitol_numeric::moments::Moments::mean), |one| one.mean),
-        variance_remainder: left(change(sensitol_numeric::moments::Moments::variance), |one| one.variance),
+        mean_remainder: left(change(Moments::mean), |one| one.mean),
+        variance_remainder: left(change(Moments::variance), |one| one.variance),
         differences,
         verdict: LotVerdict::NotMeasured,
         name,
     })
+}
+
+/// Predicted excess kurtosis; 0 as of a normal characteristic if it is unknown.
+fn excess(moments: Option<Moments>) -> f64 {
+    moments.and_then(|of| of.kurtosis()).map_or(0.0, |kurtosis| kurtosis - 3.0)
 }
 
 /// Variance of the prediction by the parts, with the uncertainty of the numbers of measured parts. `problem` is that of the measured parts.
@@ -295,7 +300,7 @@ impl PredictedFigures {
 }
 
 impl MeasuredAssemblies {
-    fn of(column: &LotSample, [lower, upper]: [Option<f64>; 2]) -> Self {
+    fn of(column: &LotSample, [lower, upper]: [Option<f64>; 2], excess: f64) -> Self {
         let count = column.count();
         let kept =
             |value: &&f64| lower.is_none_or(|lower| **value >= lower) && upper.is_none_or(|upper| **value <= upper);
@@ -307,7 +312,7 @@ impl MeasuredAssemblies {
         Self {
             count,
             mean: column.mean_figure(),
-            sigma: column.sigma_figure(0.0),
+            sigma: column.sigma_figure(excess),
             within,
             values: column.values().to_vec(),
         }

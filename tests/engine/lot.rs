@@ -205,6 +205,24 @@ fn assumed_correlations_are_counted() {
     assert!((6..=36).contains(&refuted), "{refuted}");
 }
 
+/// The square of a distance is exponential: its kurtosis is 9, and the variance of 60 values has the degrees of freedom of some 15 normal
+/// ones. 5 % of 100 right lots may be refuted, with a standard error of 2.2 %; the degrees of freedom are approximate.
+#[test]
+fn the_spread_of_a_curved_characteristic_has_the_freedom_of_its_kurtosis() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);
+    let problem = problem_of(&[("x", 0.0, 1.0), ("y", 0.0, 1.0)], "q", |x| x[0] * x[0] + x[1] * x[1]);
+    let (mut below, mut unexplained) = (0, 0);
+    for _ in 0..100 {
+        let [x, y, u, v] = [0; 4].map(|_| normal_values(&mut rng, (0.0, 1.0), 60));
+        let q = u.iter().zip(&v).map(|(u, v)| u * u + v * v).collect();
+        let found = compared_with(&problem, &[table_of(&[("x", x), ("y", y)]), table_of(&[("q", q)])]);
+        let q = &found.characteristics[0];
+        below += usize::from(q.against_parts.unwrap()[1].p <= 0.05);
+        unexplained += usize::from(matches!(q.verdict, LotVerdict::Unexplained { .. }));
+    }
+    assert!(below <= 14 && unexplained <= 5, "{below} {unexplained}");
+}
+
 #[test]
 fn wrong_lots_are_refused() {
     let column = |name: &str, values: &[f64]| LotColumn {
