@@ -38,6 +38,9 @@ pub struct CharacteristicInLot {
     pub mean_remainder: Option<f64>,
     /// Difference of the variances that no dimension explains alone.
     pub variance_remainder: Option<f64>,
+    /// True for mean and sigma each if the measured parts alone show, at 5 %, that the prediction of the study is wrong.
+    #[serde(skip)]
+    pub parts_differ: [bool; 2],
     /// Judgement.
     pub verdict: LotVerdict,
 }
@@ -106,6 +109,13 @@ pub enum LotVerdict {
         /// Dimension with the largest part in the difference.
         dimension: Option<String>,
     },
+    /// The assemblies differ from the study, and the measured parts are too few to tell whether they do: they agree with both.
+    TooFewParts {
+        /// True for the mean.
+        mean: bool,
+        /// True for the sigma.
+        sigma: bool,
+    },
     /// The assemblies differ from what their parts predict: the model is wrong, or a dimension is missing.
     Unexplained {
         /// True if the mean differs.
@@ -123,6 +133,10 @@ impl CharacteristicInLot {
             (None, _) => LotVerdict::NotMeasured,
             (_, Some([mean, sigma])) if mean || sigma => LotVerdict::Unexplained { mean, sigma },
             (Some([false, false]), _) => LotVerdict::AsAssumed,
+            // Parts that agree with the study as well as with the assemblies explain nothing.
+            (Some([mean, sigma]), Some(_)) if mean && !self.parts_differ[0] || sigma && !self.parts_differ[1] => {
+                LotVerdict::TooFewParts { mean: mean && !self.parts_differ[0], sigma: sigma && !self.parts_differ[1] }
+            }
             (Some(_), Some(_)) => {
                 LotVerdict::ByParts { dimension: self.differences.first().map(|one| one.dimension.clone()) }
             }
@@ -184,7 +198,12 @@ fn one(
         Some(total? - differences.iter().map(part).sum::<Option<f64>>()?)
     };
     let change = |of: fn(&Moments) -> f64| Some(of(by_parts.moments.as_ref()?) - of(assumed.moments.as_ref()?));
+    let parts_differ = match (by_parts.moments, assumed.moments) {
+        (Some(parts), Some(assumed)) => variance.changes(parts.mean(), assumed.mean(), assumed.variance()),
+        _ => [false; 2],
+    };
     Ok(CharacteristicInLot {
+        parts_differ,
         unit: characteristic.unit().map(str::to_owned),
         limits,
         assumed: PredictedFigures::of(assumed, None),

@@ -223,6 +223,26 @@ fn the_spread_of_a_curved_characteristic_has_the_freedom_of_its_kurtosis() {
     assert!(below <= 14 && unexplained <= 5, "{below} {unexplained}");
 }
 
+/// Five parts with the means of the study cannot explain assemblies that are off, even if their tests refute nothing.
+#[test]
+fn few_parts_explain_nothing() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(8);
+    let [_, assemblies] = lot(&mut rng, ASSUMED, [60, 40], 0.019);
+    let around = |(mean, sigma): (f64, f64), order: [f64; 5]| order.map(|u| mean + sigma * u).to_vec();
+    // Five values with the mean 0 and the sigma 1, in three orders.
+    let (far, near) = (1.9_f64.sqrt(), 0.1_f64.sqrt());
+    let parts = table_of(&[
+        ("a", around(ASSUMED[0], [-far, -near, 0.0, near, far])),
+        ("b", around(ASSUMED[1], [near, -far, far, 0.0, -near])),
+        ("c", around(ASSUMED[2], [0.0, near, -near, far, -far])),
+    ]);
+    let found = compared(&[parts, assemblies]);
+    let gap = &found.characteristics[0];
+    assert!(gap.against_assumed.unwrap()[0].refutes(0.05), "the assemblies differ from the study");
+    assert!(!gap.against_parts.unwrap()[0].refutes(0.05), "five parts refute nothing");
+    assert_eq!(gap.verdict, LotVerdict::TooFewParts { mean: true, sigma: false });
+}
+
 #[test]
 fn wrong_lots_are_refused() {
     let column = |name: &str, values: &[f64]| LotColumn {

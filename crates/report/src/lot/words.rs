@@ -90,16 +90,26 @@ pub(super) fn verdict(one: &CharacteristicInLot) -> String {
             format!("the assemblies differ from the study as their parts do: most by `{dimension}`")
         }
         LotVerdict::ByParts { dimension: None } => "the assemblies differ from the study as their parts do".to_owned(),
+        LotVerdict::TooFewParts { mean, sigma } => {
+            let what = figures(*mean, *sigma);
+            format!(
+                "the {what} of the assemblies differs from the study: the measured parts are too few to tell whether they explain it"
+            )
+        }
         LotVerdict::Unexplained { mean, sigma } => {
-            let what = match (mean, sigma) {
-                (true, true) => "mean and sigma",
-                (true, false) => "mean",
-                _ => "sigma",
-            };
+            let what = figures(*mean, *sigma);
             format!(
                 "no measured dimension explains the {what} of the assemblies: the model is wrong, or a dimension is missing"
             )
         }
+    }
+}
+
+fn figures(mean: bool, sigma: bool) -> &'static str {
+    match (mean, sigma) {
+        (true, true) => "mean and sigma",
+        (true, false) => "mean",
+        _ => "sigma",
     }
 }
 
