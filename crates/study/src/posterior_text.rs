@@ -35,11 +35,13 @@ pub struct UpdatedStudy {
     pub text: String,
     /// Dimensions whose distribution was replaced by a normal one, since its sigma follows from its band.
     pub made_normal: Vec<String>,
+    /// Correlations that stay as they are, since the study has no entry of its own for them: they are of a block or of another file.
+    pub kept_correlations: Vec<Pair>,
 }
 
 impl Study {
     /// Rewrites the study with these means and sigmas: `sigma` and `shift` take the place of capabilities, and tolerances stay. A
-    /// distribution other than a normal one becomes normal. New correlations are added at the end.
+    /// distribution other than a normal one becomes normal. A correlation of the study gets its new value, and new ones are added at the end.
     ///
     /// # Errors
     /// Fails if a dimension has no entry of its own or is measured, if correlations are to be added to a study in JSON, or if the new text
@@ -78,6 +80,14 @@ impl Study {
             let pairs = [("sigma", written(wanted.sigma, wanted.sigma)), ("shift", written(off, wanted.sigma))];
             self.replace(keys, line, &pairs, &mut edits);
         }
+        let (mut added, mut kept_correlations): (Vec<&Pair>, Vec<Pair>) = (Vec::new(), Vec::new());
+        for pair in correlations {
+            match (self.correlation_value(tree.as_ref(), pair), self.correlated(pair)) {
+                (Some(place), _) => edits.push((place, format!("{:.4}", pair.value))),
+                (None, false) => added.push(pair),
+                (None, true) => kept_correlations.push(pair.clone()),
+            }
+        }
         edits.sort_by_key(|(place, _)| (place.start, place.end));
         let (mut text, mut at) = (String::with_capacity(self.text.len()), 0);
         for (place, new) in &edits {
@@ -86,7 +96,7 @@ impl Study {
             at = place.end;
         }
         text += &self.text[at..];
-        for pair in correlations {
+        for pair in added {
             if self.format == Format::Json {
                 let why = "its correlation is new, and none is added to a study in JSON";
                 return Err(RewriteError::ByHand { dimension: pair.between[0].clone(), why });
@@ -106,7 +116,30 @@ impl Study {
                 return Err(RewriteError::NotTheSame { dimension: wanted.dimension.clone() });
             }
         }
-        Ok(UpdatedStudy { text, made_normal })
+        Ok(UpdatedStudy { text, made_normal, kept_correlations })
+    }
+
+    /// Place of the value of a correlation that the study writes.
+    fn correlation_value(&self, tree: Option<&Tree>, pair: &Pair) -> Option<Range<usize>> {
+        let Value::Array(entries) = &tree?.entry("correlation")?.value else { return None };
+        let same = |entry: &&Tree| match entry.entry("between").map(|between| &between.value) {
+            Some(Value::Array(names)) => {
+                names.len() == 2
+                    && pair.between.iter().all(|wanted| {
+                        names.iter().any(|name| matches!(&name.value, Value::Text(name) if name == wanted))
+                    })
+            }
+            _ => false,
+        };
+        Some(entries.iter().find(same)?.entry("value")?.span.clone())
+    }
+
+    /// True if two dimensions are correlated in the study, or one of them is in a block.
+    fn correlated(&self, pair: &Pair) -> bool {
+        let Some(correlation) = self.problem.correlation() else { return false };
+        let place = |name: &String| self.problem.dimensions().iter().position(|one| one.name() == name);
+        let [Some(a), Some(b)] = [&pair.between[0], &pair.between[1]].map(place) else { return false };
+        correlation.of(a, b) != 0.0 || [a, b].iter().any(|place| correlation.block_of(*place).is_some())
     }
 
     /// Puts the pairs in the place of the keys that they replace.

@@ -75,6 +75,39 @@ fn the_shifted_dimension_is_found_named_and_updated() {
     assert!(new.contains("[costs]") && new.contains("target_yield = 0.9973"));
 }
 
+/// Twenty parts whose correlation is near 1, against a study that assumes -0.5.
+fn correlated_lot() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let study = "[dimensions]\na = { nominal = 10, tolerance = 0.06 }\nb = { nominal = 9, tolerance = 0.06 }\n\
+                 [characteristics]\ngap = { formula = \"a - b\" }\n\
+                 [[correlation]]\nbetween = [\"b\", \"a\"]\nvalue = -0.5 # by experience\n";
+    // Values with the mean 0 and the sigma 0.0203, in an order without a trend.
+    let order = [3, -7, 9, 0, -4, 6, -10, 2, 8, -1, -6, 5, 10, -9, 1, -3, 7, -8, 4, -5, -2];
+    let mut lot = "a,b\n".to_owned();
+    for (row, place) in order.into_iter().enumerate() {
+        let off = 0.0033 * f64::from(place);
+        let noise = if row % 2 == 0 { 0.001 } else { -0.001 };
+        lot += &format!("{},{}\n", 10.0 + off, 9.0 + off + noise);
+    }
+    std::fs::write(folder.path().join("study.toml"), study).unwrap();
+    std::fs::write(folder.path().join("lot.csv"), lot).unwrap();
+    folder
+}
+
+/// The new value stands in the place of the old one, and the study has one correlation as before.
+#[test]
+fn a_refuted_correlation_is_replaced() {
+    let folder = correlated_lot();
+    let (code, _, stderr) = run(folder.path(), &["compare-lot", "study.toml", "lot.csv", "--update", "new.toml"]);
+    assert_eq!(code, 0, "{stderr}");
+    let new = std::fs::read_to_string(folder.path().join("new.toml")).unwrap();
+    let value = new.split("value = ").nth(1).unwrap().split(' ').next().unwrap();
+    assert!(value.parse::<f64>().unwrap() > 0.9, "{new}");
+    assert!(new.matches("[[correlation]]").count() == 1 && new.contains("# by experience"), "{new}");
+    let (code, ..) = run(folder.path(), &["analyze", "new.toml"]);
+    assert_eq!(code, 0);
+}
+
 /// `--check` ends with 1 if an assumption is refuted, and with 0 if none is.
 #[test]
 fn check_ends_with_one_where_the_study_is_refuted() {

@@ -57,9 +57,11 @@ pub(crate) fn run(asked: &CompareLotArgs, look: Look) -> Result<Exit, Failure> {
         return Ok(Exit::Interrupted);
     }
     if let Some(written) = written {
-        let UpdatedStudy { text, made_normal, .. } = updated(&study, &comparison)?;
+        let UpdatedStudy { text, made_normal, kept_correlations, .. } = updated(&study, &comparison)?;
         written.write(&text)?;
-        let notes = made_normal.iter().map(|name| format!("`{name}` is normal in the new study")).collect::<Vec<_>>();
+        let mut notes: Vec<String> =
+            made_normal.iter().map(|name| format!("`{name}` is normal in the new study")).collect();
+        notes.extend(kept_correlations.iter().map(kept_correlation));
         look.note("the study is updated", &notes);
     }
     let nothing = comparison.characteristics.iter().any(|one| one.assumed.is_none());
@@ -96,9 +98,20 @@ fn updated(study: &Study, comparison: &LotComparison) -> Result<UpdatedStudy, Fa
         let (mean, sigma) = (posterior.mean.value, posterior.sigma.value);
         Some(UpdatedSpread { dimension: one.name.clone(), mean, sigma })
     });
-    let new = comparison.correlations.iter().filter(|pair| pair.assumed == 0.0);
-    let pairs: Vec<Pair> = new.map(|pair| Pair { between: pair.between.clone(), value: pair.value.value }).collect();
+    let level = comparison.family_wise_level;
+    let refuted = comparison.correlations.iter().filter(|pair| pair.test.refutes(level));
+    let pairs: Vec<Pair> =
+        refuted.map(|pair| Pair { between: pair.between.clone(), value: pair.value.value }).collect();
     Ok(study.updated(&spreads.collect::<Vec<_>>(), &pairs)?)
+}
+
+/// Note on a correlation that the new study cannot take over.
+fn kept_correlation(pair: &Pair) -> String {
+    let [a, b] = &pair.between;
+    format!(
+        "the correlation of `{a}` and `{b}` stays as assumed, since it has no entry of its own: the lot shows {:.4}",
+        pair.value
+    )
 }
 
 /// True if a dimension departs from its assumption, or assemblies from the study.
