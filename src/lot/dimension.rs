@@ -130,6 +130,13 @@ pub struct CorrelationInLot {
     pub rows: usize,
 }
 
+impl CorrelationInLot {
+    /// True if the assumed correlation is refuted.
+    pub fn departs(&self, level: f64) -> bool {
+        self.test.refutes(level)
+    }
+}
+
 impl DimensionInLot {
     fn of(
         dimension: &Dimension,

@@ -108,6 +108,17 @@ fn a_refuted_correlation_is_replaced() {
     assert_eq!(code, 0);
 }
 
+/// The marginal figures of this lot are those of the study, and the correlation is not.
+#[test]
+fn a_refuted_correlation_is_a_finding() {
+    let folder = correlated_lot();
+    let (code, stdout, stderr) = run(folder.path(), &["compare-lot", "study.toml", "lot.csv", "--check"]);
+    assert_eq!(code, 1, "{stderr}");
+    let before_table = stdout.split("Ppk").next().unwrap();
+    assert!(before_table.contains("correlation of a and b: 0.99"), "{stdout}");
+    assert_eq!(stdout.matches("correlation of a and b").count(), 1, "{stdout}");
+}
+
 /// `--check` ends with 1 if an assumption is refuted, and with 0 if none is.
 #[test]
 fn check_ends_with_one_where_the_study_is_refuted() {

@@ -4,7 +4,7 @@ use crate::document::number::{known, percent, plural, significant, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Section, Tone};
 use crate::lot::LotReport;
 use crate::lot::overlay::overlay;
-use crate::lot::words::{departures, figure, placed, verdict};
+use crate::lot::words::{correlation, departures, figure, placed, verdict};
 use sensitol::lot::{CharacteristicInLot, DifferenceShare, DimensionInLot, LotVerdict, PredictedFigures};
 
 /// Most dimensions whose part in a difference is listed in a terminal.
@@ -35,7 +35,11 @@ pub(super) fn document(report: &LotReport) -> Document {
             document.note(format!("{}: {phrase}", one.name));
         }
     }
-    let named = found.dimensions.iter().filter(|one| one.departs(found.family_wise_level)).count();
+    let level = found.family_wise_level;
+    for pair in found.correlations.iter().filter(|pair| pair.departs(level)) {
+        document.note(correlation(pair));
+    }
+    let named = found.dimensions.iter().filter(|one| one.departs(level)).count();
     if named == 0 && !found.dimensions.is_empty() {
         document.note("no measured dimension departs from its assumption");
     }
@@ -43,10 +47,8 @@ pub(super) fn document(report: &LotReport) -> Document {
     if !found.dimensions.is_empty() {
         document.table(parts(&found.dimensions, found.family_wise_level));
     }
-    for pair in &found.correlations {
-        let [a, b] = &pair.between;
-        let value = figure(&pair.value, 2);
-        document.note(format!("correlation of {a} and {b}: {value}, assumed {}", significant(pair.assumed, 2)));
+    for pair in found.correlations.iter().filter(|pair| !pair.departs(level)) {
+        document.note(correlation(pair));
     }
     if !found.not_measured.is_empty() {
         document.list("not measured, as assumed", found.not_measured.clone());

@@ -1,7 +1,7 @@
 //! Sentences about a lot: departures of a dimension, verdict of a characteristic.
 
 use crate::document::number::{index, percent, significant};
-use sensitol::lot::{CharacteristicInLot, DimensionInLot, GroupKind, LotVerdict};
+use sensitol::lot::{CharacteristicInLot, CorrelationInLot, DimensionInLot, GroupKind, LotVerdict};
 use sensitol_numeric::lot::{Departure, LotFigure};
 
 /// Formats a figure with its interval.
@@ -45,6 +45,12 @@ pub(super) fn departures(one: &DimensionInLot, level: f64) -> Vec<String> {
         phrases.push(shape(one));
     }
     phrases
+}
+
+/// Measured correlation beside the assumed one.
+pub(super) fn correlation(pair: &CorrelationInLot) -> String {
+    let [a, b] = &pair.between;
+    format!("correlation of {a} and {b}: {}, assumed {}", figure(&pair.value, 2), significant(pair.assumed, 2))
 }
 
 fn shape(one: &DimensionInLot) -> String {

@@ -99,7 +99,7 @@ fn updated(study: &Study, comparison: &LotComparison) -> Result<UpdatedStudy, Fa
         Some(UpdatedSpread { dimension: one.name.clone(), mean, sigma })
     });
     let level = comparison.family_wise_level;
-    let refuted = comparison.correlations.iter().filter(|pair| pair.test.refutes(level));
+    let refuted = comparison.correlations.iter().filter(|pair| pair.departs(level));
     let pairs: Vec<Pair> =
         refuted.map(|pair| Pair { between: pair.between.clone(), value: pair.value.value }).collect();
     Ok(study.updated(&spreads.collect::<Vec<_>>(), &pairs)?)
@@ -114,10 +114,11 @@ fn kept_correlation(pair: &Pair) -> String {
     )
 }
 
-/// True if a dimension departs from its assumption, or assemblies from the study.
+/// True if a dimension or a correlation departs from its assumption, or assemblies from the study.
 fn refuted(comparison: &LotComparison) -> bool {
     let level = comparison.family_wise_level;
     let agrees = |verdict: &LotVerdict| matches!(verdict, LotVerdict::AsAssumed | LotVerdict::NotMeasured);
     comparison.dimensions.iter().any(|one| one.departs(level))
+        || comparison.correlations.iter().any(|pair| pair.departs(level))
         || comparison.characteristics.iter().any(|one| !agrees(&one.verdict))
 }
