@@ -24,13 +24,13 @@ pub struct CharacteristicInLot {
     pub limits: [Option<f64>; 2],
     /// Prediction of the study; null if the model has no result.
     pub assumed: Option<PredictedFigures>,
-    /// Prediction with the measured parts.
+    /// Prediction with the measured parts; null if there are none.
     pub by_parts: Option<PredictedFigures>,
     /// Measured assemblies; null if there are none.
     pub assemblies: Option<MeasuredAssemblies>,
     /// Tests of mean and sigma of the assemblies against the study.
     pub against_assumed: Option<[LotTest; 2]>,
-    /// Tests of mean and sigma of the assemblies against the measured parts.
+    /// Tests of mean and sigma of the assemblies against the measured parts; null if no measured part is in the characteristic.
     pub against_parts: Option<[LotTest; 2]>,
     /// Difference of the two predictions by measured dimensions, largest first.
     pub differences: Vec<DifferenceShare>,
@@ -192,13 +192,22 @@ fn one(
         let spreads = compare_spreads(measured, variance, excess(Some(moments)));
         Some([compare_means(measured, moments.mean(), variance), spreads])
     };
-    let (against_assumed, against_parts) = (tests(assumed.moments, &known), tests(by_parts.moments, &variance));
+    // Without a measured part the second prediction is the first one, whose tests would be counted twice.
+    let has_parts = !lot.dimensions.is_empty();
+    let against_assumed = tests(assumed.moments, &known);
+    let against_parts = if has_parts && (variance.of_mean() > 0.0 || by_parts.moments != assumed.moments) {
+        tests(by_parts.moments, &variance)
+    } else {
+        None
+    };
     let differences = differences([assumed, by_parts], lot.dimensions);
     let left = |total: Option<f64>, part: fn(&DifferenceShare) -> Option<f64>| {
-        Some(total? - differences.iter().map(part).sum::<Option<f64>>()?)
+        Some(total.filter(|_| has_parts)? - differences.iter().map(part).sum::<Option<f64>>()?)
     };
     let change = |of: fn(&Moments) -> f64| Some(of(by_parts.moments.as_ref()?) - of(assumed.moments.as_ref()?));
     let parts_differ = match (by_parts.moments, assumed.moments) {
+        // The uncertainty of the parts is unknown without sensitivities: their prediction is taken as it is.
+        (Some(_), Some(_)) if variance.of_mean() == 0.0 => [true; 2],
         (Some(parts), Some(assumed)) => variance.changes(parts.mean(), assumed.mean(), assumed.variance()),
         _ => [false; 2],
     };
@@ -207,7 +216,7 @@ fn one(
         unit: characteristic.unit().map(str::to_owned),
         limits,
         assumed: PredictedFigures::of(assumed, None),
-        by_parts: PredictedFigures::of(by_parts, Some(&variance)),
+        by_parts: PredictedFigures::of(by_parts, Some(&variance)).filter(|_| has_parts),
         assemblies: measured.map(|column| MeasuredAssemblies::of(&column, limits, excess(by_parts.moments))),
         against_assumed,
         against_parts,
@@ -303,12 +312,14 @@ impl PredictedFigures {
         let capability = analysis.distribution.capability;
         let rejects = capability.map_or([None; 2], |of| [of.below, of.above]);
         let yield_interval = match variance {
-            Some(variance) => predicted_yield_interval(rejects, variance),
-            None => analysis.yield_interval(),
+            Some(variance) if variance.of_mean() > 0.0 => predicted_yield_interval(rejects, variance),
+            _ => analysis.yield_interval(),
         };
         Some(Self {
             mean: moments.mean(),
-            mean_interval: variance.map(|variance| variance.mean_interval(moments.mean())),
+            mean_interval: variance
+                .filter(|variance| variance.of_mean() > 0.0)
+                .map(|variance| variance.mean_interval(moments.mean())),
             sigma: moments.sigma(),
             skewness: moments.skewness(),
             kurtosis: moments.kurtosis(),

@@ -99,6 +99,10 @@ fn a_missing_dimension_is_no_fault_of_the_parts() {
     let found = compared(&[assemblies]);
     assert!(matches!(found.characteristics[0].verdict, LotVerdict::Unexplained { mean: true, .. }));
     assert_eq!(found.not_measured, NAMES);
+    let gap = &found.characteristics[0];
+    assert!(gap.by_parts.is_none() && gap.against_parts.is_none() && gap.differences.is_empty());
+    // The assemblies' mean and sigma are tested once.
+    assert_eq!(found.tests, 2);
 }
 
 /// Parts that vary together widen the difference of two of them.

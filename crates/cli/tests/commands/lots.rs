@@ -132,6 +132,24 @@ fn check_ends_with_one_where_the_study_is_refuted() {
     assert!(stdout.contains("no measured dimension departs from its assumption"), "{stdout}");
 }
 
+/// A verdict says the same as the departures that are listed below it.
+#[test]
+fn verdicts_and_departures_agree() {
+    let folder = folder("bearing\n15.003\n14.99\n15.012\n14.995\n15.001\n14.987\n15.008\n15.0\n");
+    let (_, stdout, _) = run(folder.path(), &["compare-lot", "study.toml", "lot.csv"]);
+    assert!(stdout.contains("play: no assemblies were measured: no measured part of it departs"), "{stdout}");
+    assert!(stdout.contains("no measured dimension departs from its assumption"), "{stdout}");
+    // Assemblies alone say nothing about parts.
+    std::fs::write(folder.path().join("lot.csv"), read(FILES[1])).unwrap();
+    let (_, stdout, _) = run(folder.path(), &["compare-lot", "study.toml", "lot.csv"]);
+    assert!(!stdout.contains("measured parts") && !stdout.contains("their parts"), "{stdout}");
+    assert!(stdout.contains("and no part of it was measured"), "{stdout}");
+    // The shifted depth of the example changes the prediction, and is the one that is named.
+    std::fs::write(folder.path().join("lot.csv"), read(FILES[0])).unwrap();
+    let (_, stdout, _) = run(folder.path(), &["compare-lot", "study.toml", "lot.csv"]);
+    assert!(stdout.contains("the parts change the prediction, most by `depth`"), "{stdout}");
+}
+
 #[test]
 fn wrong_lots_are_refused() {
     let refused = |lot: &str| {

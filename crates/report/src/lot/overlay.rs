@@ -9,9 +9,10 @@ const POINTS: u32 = 120;
 /// Half-width of the drawn range, in sigmas of the wider prediction.
 const REACH: f64 = 4.0;
 
-/// Chart of a characteristic. Returns None without two predictions.
+/// Chart of a characteristic. Returns None without a prediction.
 pub(super) fn overlay(one: &CharacteristicInLot) -> Option<Chart> {
-    let (assumed, parts) = (one.assumed?, one.by_parts?);
+    let assumed = one.assumed?;
+    let parts = one.by_parts.unwrap_or(assumed);
     let low = [assumed, parts].map(|of| of.mean - REACH * of.sigma);
     let high = [assumed, parts].map(|of| of.mean + REACH * of.sigma);
     let (low, high) = (low[0].min(low[1]), high[0].max(high[1]));
@@ -21,7 +22,8 @@ pub(super) fn overlay(one: &CharacteristicInLot) -> Option<Chart> {
     let places: Vec<f64> =
         (0..=POINTS).map(|point| low + (high - low) * f64::from(point) / f64::from(POINTS)).collect();
     let mut layers = Vec::new();
-    for (of, stroke) in [(assumed, Stroke::Dotted), (parts, Stroke::Strong)] {
+    let drawn = [(Some(assumed), Stroke::Dotted), (one.by_parts, Stroke::Strong)];
+    for (of, stroke) in drawn.into_iter().filter_map(|(of, stroke)| Some((of?, stroke))) {
         let density = density(&of)?;
         layers.push(Layer::Curve(places.iter().map(|x| (*x, Some(density.pdf(*x)))).collect(), stroke));
     }
@@ -29,14 +31,19 @@ pub(super) fn overlay(one: &CharacteristicInLot) -> Option<Chart> {
         layers.push(Layer::Points(bins(&assemblies.values)));
     }
     let unit = one.unit.as_deref().map_or(String::new(), |unit| format!(" [{unit}]"));
+    let mut words = "Dotted: predicted by the assumed parts.".to_owned();
+    if one.by_parts.is_some() {
+        words += " Line: predicted by the measured parts.";
+    }
+    if one.assemblies.is_some() {
+        words += " Circles: density of the measured assemblies, a circle for each interval.";
+    }
     Some(Chart::Plot(Plot {
         name: one.name.clone(),
         x: PlotAxis::new(format!("{}{unit}", one.name), PlotScale::Linear(0.0)),
         y: PlotAxis::new("density", PlotScale::Linear(0.05)),
         layers,
-        words: "Dotted: predicted by the assumed parts. Line: predicted by the measured parts. Circles: density of the measured \
-                assemblies, a circle for each interval."
-            .to_owned(),
+        words,
     }))
 }
 

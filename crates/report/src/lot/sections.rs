@@ -5,7 +5,9 @@ use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Secti
 use crate::lot::LotReport;
 use crate::lot::overlay::overlay;
 use crate::lot::words::{correlation, departures, figure, placed, verdict};
-use sensitol::lot::{CharacteristicInLot, DifferenceShare, DimensionInLot, LotVerdict, PredictedFigures};
+use sensitol::lot::{
+    CharacteristicInLot, DifferenceShare, DimensionInLot, LotComparison, LotVerdict, PredictedFigures,
+};
 
 /// Most dimensions whose part in a difference is listed in a terminal.
 const LISTED: usize = 8;
@@ -28,7 +30,7 @@ pub(super) fn document(report: &LotReport) -> Document {
     document.line(format!("{}: {tests}, wrong together with at most {level} % (Holm)", report.lot.join(", ")));
     document.gap();
     for one in &found.characteristics {
-        document.line(format!("{}: {}", one.name, verdict(one)));
+        document.line(format!("{}: {}", one.name, verdict(one, found)));
     }
     for one in &found.dimensions {
         for phrase in departures(one, found.family_wise_level) {
@@ -53,7 +55,7 @@ pub(super) fn document(report: &LotReport) -> Document {
     if !found.not_measured.is_empty() {
         document.list("not measured, as assumed", found.not_measured.clone());
     }
-    document.sections = found.characteristics.iter().map(section).collect();
+    document.sections = found.characteristics.iter().map(|one| section(one, found)).collect();
     document.sections.extend(groups(&found.dimensions));
     document
 }
@@ -100,9 +102,9 @@ fn parts(dimensions: &[DimensionInLot], level: f64) -> DataTable {
         .table("parts", dimensions)
 }
 
-fn section(one: &CharacteristicInLot) -> Section {
+fn section(one: &CharacteristicInLot, found: &LotComparison) -> Section {
     let mut section = Section::of(&one.name, one.unit.as_deref());
-    section.words = format!(": {}", verdict(one));
+    section.words = format!(": {}", verdict(one, found));
     section.table(sources(one));
     if !one.differences.is_empty() {
         section.table(difference_table(one));
@@ -111,14 +113,14 @@ fn section(one: &CharacteristicInLot) -> Section {
         }
     }
     section.blocks.extend(overlay(one).map(Element::Chart));
-    if let LotVerdict::Unexplained { .. } = one.verdict {
+    if let (LotVerdict::Unexplained { .. }, Some(_)) = (&one.verdict, &one.against_parts) {
         section.note("compare the assemblies of single measured parts with the model, and look for what is not in it");
     }
     section
 }
 
 fn sigma(one: &CharacteristicInLot) -> f64 {
-    one.by_parts.map_or(1.0, |of| of.sigma)
+    one.by_parts.or(one.assumed).map_or(1.0, |of| of.sigma)
 }
 
 fn sources(one: &CharacteristicInLot) -> DataTable {

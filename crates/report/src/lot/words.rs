@@ -1,7 +1,9 @@
 //! Sentences about a lot: departures of a dimension, verdict of a characteristic.
 
 use crate::document::number::{index, percent, significant};
-use sensitol::lot::{CharacteristicInLot, CorrelationInLot, DimensionInLot, GroupKind, LotVerdict};
+use sensitol::lot::{
+    CharacteristicInLot, CorrelationInLot, DifferenceShare, DimensionInLot, GroupKind, LotComparison, LotVerdict,
+};
 use sensitol_numeric::lot::{Departure, LotFigure};
 
 /// Formats a figure with its interval.
@@ -83,31 +85,44 @@ fn shape(one: &DimensionInLot) -> String {
 }
 
 /// Verdict of a characteristic in one sentence.
-pub(super) fn verdict(one: &CharacteristicInLot) -> String {
+pub(super) fn verdict(one: &CharacteristicInLot, found: &LotComparison) -> String {
     match &one.verdict {
-        LotVerdict::NotMeasured => match one.differences.first() {
-            Some(first) if changes(one) => {
-                format!("no assemblies were measured: the parts change the prediction, most by `{}`", first.dimension)
-            }
-            _ => "no assemblies were measured: the parts agree with the study".to_owned(),
-        },
+        LotVerdict::NotMeasured => format!("no assemblies were measured: {}", parts_alone(one, found)),
+        LotVerdict::AsAssumed if one.against_parts.is_none() => "the assemblies agree with the study".to_owned(),
         LotVerdict::AsAssumed => "the assemblies agree with the study and with their parts".to_owned(),
         LotVerdict::ByParts { dimension: Some(dimension) } => {
             format!("the assemblies differ from the study as their parts do: most by `{dimension}`")
         }
         LotVerdict::ByParts { dimension: None } => "the assemblies differ from the study as their parts do".to_owned(),
-        LotVerdict::TooFewParts { mean, sigma } => {
-            let what = figures(*mean, *sigma);
-            format!(
-                "the {what} of the assemblies differs from the study: the measured parts are too few to tell whether they explain it"
-            )
-        }
-        LotVerdict::Unexplained { mean, sigma } => {
-            let what = figures(*mean, *sigma);
-            format!(
-                "no measured dimension explains the {what} of the assemblies: the model is wrong, or a dimension is missing"
-            )
-        }
+        LotVerdict::TooFewParts { mean, sigma } => format!(
+            "the assemblies differ from the study in {}: the measured parts are too few to tell whether they explain it",
+            figures(*mean, *sigma)
+        ),
+        LotVerdict::Unexplained { mean, sigma } if one.against_parts.is_none() => format!(
+            "the assemblies differ from the study in {}, and no part of it was measured",
+            figures(*mean, *sigma)
+        ),
+        LotVerdict::Unexplained { mean, sigma } => format!(
+            "no measured dimension explains the {} of the assemblies: the model is wrong, or a dimension is missing",
+            figures(*mean, *sigma)
+        ),
+    }
+}
+
+/// Judgement of the parts without assemblies, by the tests that the departures below it name.
+fn parts_alone(one: &CharacteristicInLot, found: &LotComparison) -> String {
+    let level = found.family_wise_level;
+    let refuted = |name: &str| found.dimensions.iter().any(|of| of.name == name && of.departs(level));
+    let acts =
+        |share: &&DifferenceShare| share.mean.is_none_or(|by| by != 0.0) || share.variance.is_none_or(|by| by != 0.0);
+    let first = one.differences.iter().filter(acts).find(|share| refuted(&share.dimension));
+    let correlated = found.correlations.iter().any(|pair| pair.departs(level));
+    match (first, changes(one)) {
+        (Some(first), true) => format!("the parts change the prediction, most by `{}`", first.dimension),
+        (Some(_), false) => "parts depart from the study, and hardly change the prediction".to_owned(),
+        (None, true) if correlated => "the correlation of the parts changes the prediction".to_owned(),
+        (None, _) if correlated => "the correlation of the parts departs from the study".to_owned(),
+        (None, _) => "no measured part of it departs from the study".to_owned(),
     }
 }
 
