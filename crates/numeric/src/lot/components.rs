@@ -26,8 +26,9 @@ pub struct GroupComparison {
     pub groups: Vec<(String, usize, f64)>,
 }
 
-/// Variance components of values with the name of the group of each. Returns None of fewer than two groups, or if no group has two
-/// different values.
+/// Variance components of values with the name of the group of each. Returns None of fewer than two groups, if no group has two
+/// values, or if all values are equal. Where no group has two different values, all the variance is between the groups: its interval is that
+/// of the means alone.
 ///
 /// ```
 /// use sensitol_numeric::lot::compare_groups;
@@ -52,7 +53,7 @@ pub fn compare_groups(parts: &[(&str, f64)]) -> Option<GroupComparison> {
     let inside: f64 = groups.values().map(around).sum();
     let outside: f64 = groups.values().map(|values| values.len() as f64 * (mean(values) - grand).powi(2)).sum();
     let freedom = [count - 1.0, total - count];
-    if freedom[0] < 1.0 || freedom[1] < 1.0 || inside.is_nan() || inside <= 0.0 {
+    if freedom[0] < 1.0 || freedom[1] < 1.0 || !(inside + outside > 0.0 && inside >= 0.0) {
         return None;
     }
     let (between, within) = (outside / freedom[0], inside / freedom[1]);

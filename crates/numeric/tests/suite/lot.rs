@@ -258,3 +258,16 @@ fn sigma_of_a_known_shape_has_the_freedom_of_its_kurtosis() {
     }
     held(&[("sigma", inside)], LOTS);
 }
+
+/// A gauge that is coarser than the parts of a tool: the means are 0 and 1, whose standard deviation is the root of 0.5, and nothing is
+/// left within. The interval is that of a variance with one degree of freedom: chi-squared quantiles 5.02389 and 0.000982069 of tables.
+#[test]
+fn groups_without_inner_spread_have_all_the_variance() {
+    let parts: Vec<(&str, f64)> = (0..20).map(|part| if part % 2 == 0 { ("T0", 0.0) } else { ("T1", 1.0) }).collect();
+    let found = compare_groups(&parts).unwrap();
+    close(found.between.value, 0.5_f64.sqrt(), 1e-12, 1.0);
+    close(found.between.interval[0], (0.5_f64 / 5.023_89).sqrt(), 1e-5, 1.0);
+    close(found.between.interval[1], (0.5_f64 / 0.000_982_069).sqrt(), 1e-5, 1.0);
+    assert_eq!((found.within.value, found.within.interval, found.test.p), (0.0, [0.0, 0.0], 0.0));
+    assert!(compare_groups(&[("T0", 1.0), ("T0", 1.0), ("T1", 1.0)]).is_none());
+}
