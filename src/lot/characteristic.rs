@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::analysis::{Analysis, CharacteristicAnalysis};
+use crate::lot::error::sample;
 use crate::lot::{CorrelationInLot, DimensionInLot, LotError, LotTable};
 use crate::problem::Problem;
 use sensitol_numeric::lot::{
@@ -177,16 +178,10 @@ fn one(
     let limits = [characteristic.limits().lower(), characteristic.limits().upper()];
     let variance = variance(lot.problem, by_parts, lot.dimensions, lot.correlations, lot.level);
     let known = PredictedVariance::known(assumed.moments.map_or(f64::NAN, |of| of.variance()));
-    let columns = tables.iter().flat_map(|table| &table.columns).find(|column| column.name == name);
-    let values: Option<Vec<f64>> = columns.map(|column| column.values.iter().copied().flatten().collect());
-    let measured = match &values {
-        None => None,
-        Some(values) => {
-            let equal =
-                || LotError::AllEqual { name: name.clone(), value: values.first().copied().unwrap_or(f64::NAN) };
-            Some(LotSample::new(values).ok_or_else(equal)?)
-        }
-    };
+    let columns = tables.iter().flat_map(|table| table.columns.iter().map(move |column| (table, column)));
+    let measured =
+        columns.filter(|(_, column)| column.name == name).map(|(table, column)| sample(table, column)).next();
+    let measured = measured.transpose()?;
     let tests = |moments: Option<Moments>, variance: &PredictedVariance| {
         let (measured, moments) = (measured.as_ref()?, moments?);
         let spreads = compare_spreads(measured, variance, excess(Some(moments)));

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::lot::error::sample;
 use crate::lot::{GroupKind, LotColumn, LotError, LotTable};
 use crate::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
@@ -148,9 +149,7 @@ impl DimensionInLot {
             column.values.iter().enumerate().filter_map(|(row, value)| Some((row, (*value)?))).collect();
         let values: Vec<f64> = measured.iter().map(|(_, value)| *value).collect();
         let name = dimension.name().to_owned();
-        let Some(found) = LotSample::new(&values) else {
-            return Err(LotError::AllEqual { name, value: values.first().copied().unwrap_or(f64::NAN) });
-        };
+        let found = sample(table, column)?;
         let tests = found.tests(law);
         let excess = law.standard_moments().kurtosis() - 3.0;
         let limits =

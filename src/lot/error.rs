@@ -1,11 +1,12 @@
 //! Errors of a comparison with a lot.
 
-use crate::lot::{LotOptions, LotTable};
+use crate::lot::{LotColumn, LotOptions, LotTable};
 use crate::method::MethodError;
 use crate::problem::Problem;
 use sensitol_numeric::correlation::CorrelationError;
 use sensitol_numeric::dimension::DimensionError;
 use sensitol_numeric::distribution::DistributionError;
+use sensitol_numeric::lot::LotSample;
 use sensitol_numeric::names::nearest;
 
 /// Fewest values of a measured dimension or characteristic.
@@ -27,26 +28,49 @@ pub enum LotError {
         nearest: Option<String>,
     },
     /// A dimension or characteristic stands in two columns.
-    #[error("`{name}` is measured in two columns: leave one out")]
+    #[error("`{name}` is measured in two columns{}", twice(tables))]
     MeasuredTwice {
         /// Name of the column.
         name: String,
+        /// Names of the two tables.
+        tables: [String; 2],
     },
     /// A column has too few values.
-    #[error("`{name}` has {found} measured values, and at least {FEWEST} are needed")]
+    #[error(
+        "`{name}` has {found} measured value{}{}, and at least {FEWEST} are needed: measure more parts, or leave the column out",
+        if *found == 1 { "" } else { "s" },
+        within(table)
+    )]
     TooFewParts {
         /// Name of the column.
         name: String,
         /// Number of values.
         found: usize,
+        /// Name of the table.
+        table: String,
     },
     /// All values of a column are equal.
-    #[error("all measured values of `{name}` are {value}: a lot without variation has no sigma")]
+    #[error(
+        "all measured values of `{name}` are {value}{}: a lot without variation has no sigma; write more digits, or leave the column out",
+        within(table)
+    )]
     AllEqual {
         /// Name of the column.
         name: String,
         /// The value.
         value: f64,
+        /// Name of the table.
+        table: String,
+    },
+    /// The values of a column are so far apart that they have no sigma.
+    #[error("the measured values of `{name}`{} go from {:e} to {:e}, too far apart for a sigma: correct them", within(table), ends[0], ends[1])]
+    TooFarApart {
+        /// Name of the column.
+        name: String,
+        /// Least and greatest value.
+        ends: [f64; 2],
+        /// Name of the table.
+        table: String,
     },
     /// A measured dimension does not vary in the study.
     #[error(
@@ -80,6 +104,38 @@ pub enum LotError {
     Method(#[from] MethodError),
 }
 
+/// Words on the table of a value.
+fn within(table: &str) -> String {
+    if table.is_empty() { String::new() } else { format!(" in {table}") }
+}
+
+/// Words on the two tables of a column, and the way out.
+fn twice([first, second]: &[String; 2]) -> String {
+    if first == second {
+        return format!("{}: leave one out", within(first));
+    }
+    format!(
+        ", in {first} and {second}: join the rows of both in one table, with a column `lot` that names the lot of each row"
+    )
+}
+
+/// Measured values of a column.
+///
+/// # Errors
+/// If the values are too few, all equal, or too far apart.
+pub(super) fn sample(table: &LotTable, column: &LotColumn) -> Result<LotSample, LotError> {
+    let values: Vec<f64> = column.values.iter().copied().flatten().collect();
+    let (name, table) = (column.name.clone(), table.name.clone());
+    if values.len() < FEWEST {
+        return Err(LotError::TooFewParts { name, found: values.len(), table });
+    }
+    let ends = [values.iter().copied().fold(f64::MAX, f64::min), values.iter().copied().fold(f64::MIN, f64::max)];
+    LotSample::new(&values).ok_or(match ends[0] < ends[1] {
+        true => LotError::TooFarApart { name, ends, table },
+        false => LotError::AllEqual { name, value: values[0], table },
+    })
+}
+
 /// Checks names, counts and choices.
 pub(super) fn checked(problem: &Problem, tables: &[LotTable], options: &LotOptions) -> Result<(), LotError> {
     let range = |what, range, value| Err(LotError::Choice { what, range, value });
@@ -90,11 +146,12 @@ pub(super) fn checked(problem: &Problem, tables: &[LotTable], options: &LotOptio
     if !(parts == 0.0 || parts >= 2.0 && parts.is_finite()) {
         return range("the weight of the study in parts", "0, or 2 or more", parts);
     }
-    let columns: Vec<_> = tables.iter().flat_map(|table| &table.columns).collect();
+    let columns: Vec<(&LotTable, &LotColumn)> =
+        tables.iter().flat_map(|table| table.columns.iter().map(move |column| (table, column))).collect();
     if columns.is_empty() {
         return Err(LotError::Nothing);
     }
-    for (place, column) in columns.iter().enumerate() {
+    for (place, (table, column)) in columns.iter().enumerate() {
         let name = column.name.clone();
         let dimension = problem.dimensions().iter().find(|one| one.name() == name);
         let known = problem.characteristics().iter().any(|one| one.name() == name);
@@ -103,19 +160,13 @@ pub(super) fn checked(problem: &Problem, tables: &[LotTable], options: &LotOptio
             let all = dimensions.chain(problem.characteristics().iter().map(|one| one.name()));
             return Err(LotError::UnknownColumn { nearest: nearest(&name, all).map(str::to_owned), name });
         }
-        if columns[..place].iter().any(|earlier| earlier.name == name) {
-            return Err(LotError::MeasuredTwice { name });
+        if let Some((earlier, _)) = columns[..place].iter().find(|(_, earlier)| earlier.name == name) {
+            return Err(LotError::MeasuredTwice { name, tables: [earlier.name.clone(), table.name.clone()] });
         }
         if dimension.is_some_and(|one| one.distribution().is_none()) {
             return Err(LotError::NotVarying { name });
         }
-        let values: Vec<f64> = column.values.iter().copied().flatten().collect();
-        if values.len() < FEWEST {
-            return Err(LotError::TooFewParts { name, found: values.len() });
-        }
-        if values.iter().all(|value| *value == values[0]) {
-            return Err(LotError::AllEqual { name, value: values[0] });
-        }
+        sample(table, column)?;
     }
     Ok(())
 }

@@ -66,6 +66,8 @@ pub struct LotColumn {
 /// Rows of measured parts or assemblies, in the order of measurement.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LotTable {
+    /// Name of the table in messages; empty if it has none.
+    pub name: String,
     /// Measured values.
     pub columns: Vec<LotColumn>,
     /// Columns that group the rows.

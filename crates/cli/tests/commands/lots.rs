@@ -169,7 +169,20 @@ fn wrong_lots_are_refused() {
     says("depth;ring;depth\n1;2;3\n", &["the column `depth` stands twice"]);
     says("depth [kg]\n42\n", &["in kg, and the study has mm"]);
     says("depth\n42.01\n42.02\n", &["2 measured values", "at least 5"]);
-    says("depth\n42\n42\n42\n42\n42\n", &["all measured values of `depth` are 42"]);
+    says("depth\n42\n42\n42\n42\n42\n", &["all measured values of `depth` are 42 in lot.csv", "more digits"]);
+    says("depth\n42.01\n", &["`depth` has 1 measured value in lot.csv", "leave the column out"]);
+    says("depth\n42.01\n1e300\n-1e300\n42.02\n42.03\n", &["`depth` in lot.csv go from -1", "too far apart"]);
     says("time;depth\n6 am;42.01\n", &["`6 am` is not a time", "06:30"]);
     says("depth\n", &["a first row with the names of the columns"]);
+}
+
+/// Lots of the same parts belong in one table, and the error says how.
+#[test]
+fn two_tables_of_the_same_parts_are_named() {
+    let folder = folder("depth\n42.01\n42.02\n42.03\n42.02\n42.00\n");
+    std::fs::copy(folder.path().join("lot.csv"), folder.path().join("next.csv")).unwrap();
+    let (code, _, stderr) = run(folder.path(), &["compare-lot", "study.toml", "lot.csv", "next.csv"]);
+    assert_eq!(code, 2);
+    let words = ["`depth` is measured in two columns, in lot.csv and next.csv", "a column `lot`"];
+    assert!(words.iter().all(|words| stderr.contains(words)), "{stderr}");
 }

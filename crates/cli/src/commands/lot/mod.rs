@@ -84,7 +84,8 @@ fn table(path: &Path, study: &Study, look: Look) -> Result<LotTable, Failure> {
         }
         false => Sheet::of_text(&text_of(path, bytes)?),
     };
-    let read = read_lot(&sheet, study).map_err(|fault| failed(path, fault.to_string(), fault.help()))?;
+    let mut read = read_lot(&sheet, study).map_err(|fault| failed(path, fault.to_string(), fault.help()))?;
+    read.table.name = path.display().to_string();
     if !read.notes.is_empty() {
         look.note(&path.display().to_string(), &read.notes);
     }
