@@ -35,7 +35,7 @@ const OPTIMAL: f64 = 1e-6;
 /// Fewest points of a confirmation.
 const FEWEST_CONFIRM: u64 = 2;
 /// Greatest gap of a choice of processes that is reported as optimal.
-const NO_GAP: f64 = 1e-9;
+pub(in crate::allocation) const NO_GAP: f64 = 1e-9;
 
 impl Driver<'_> {
     /// Fills in the allocation from the last tolerances.
@@ -485,7 +485,7 @@ pub(in crate::allocation) fn doubts(problem: &Problem, priced: &[Priced], alloca
 }
 
 /// True if the status says that tolerances were found.
-fn is_found(status: Status) -> bool {
+pub(in crate::allocation) fn is_found(status: Status) -> bool {
     matches!(status, Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal)
 }
 

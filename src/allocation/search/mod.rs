@@ -14,6 +14,7 @@ pub(in crate::allocation) mod nominal_and_tolerance;
 pub(in crate::allocation) mod pareto_front;
 pub(in crate::allocation) mod proportional;
 pub(in crate::allocation) mod refinement;
+pub(in crate::allocation) mod refinement_search;
 pub(in crate::allocation) mod run;
 pub(in crate::allocation) mod search_state;
 pub(in crate::allocation) mod step;

@@ -1,7 +1,7 @@
 //! Zones that refine others: the tolerance of an orientation is never wider than that of its location.
 //!
-//! Where the cheapest tolerances break this, both are one tolerance at the optimum, since the problem is convex. The
-//! search is repeated with both as one, whose cost is the sum.
+//! Where the cheapest tolerances break this and all of them are free with convex costs, both are one tolerance at the
+//! optimum. Lists of offers are split until the cheapest tolerances keep it.
 
 use std::ops::Range;
 
@@ -9,40 +9,123 @@ use crate::allocation::cost::cost_curve::Curve;
 use crate::allocation::cost::priced_group::{Offer, Priced};
 use crate::allocation::cost::priced_group::{PricedZone, ZonePart};
 use crate::allocation::result::allocation::Allocation;
-use crate::allocation::task::AllocationTask;
+use crate::allocation::task::{AllocationTask, Goal};
 
 /// Relative excess over the wider zone that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// Tasks that exclude an optimum which breaks a refinement.
+pub(in crate::allocation) struct Split {
+    pub(in crate::allocation) tasks: Vec<AllocationTask>,
+    /// True if the tasks hold an optimum of all tolerances that keep the refinement.
+    pub(in crate::allocation) is_exact: bool,
+}
+
+/// Pair of groups whose tolerances break a refinement, with these tolerances.
+struct Broken {
+    inner: usize,
+    outer: usize,
+    tight: f64,
+    wide: f64,
+}
+
 impl AllocationTask {
-    /// Task with the tolerances that break a refinement as one. Returns None if none of them does.
-    pub(in crate::allocation) fn refining(&self, found: &Allocation) -> Option<Self> {
-        let after = |name: &str| {
-            let row = found.tolerances.iter().find(|row| row.zone.as_ref().is_some_and(|zone| zone.name == name));
+    /// True if the tolerances found break a refinement.
+    pub(in crate::allocation) fn breaks_refinement(&self, found: &Allocation) -> bool {
+        self.broken(found).is_some()
+    }
+
+    fn broken(&self, found: &Allocation) -> Option<Broken> {
+        let after = |g: usize| {
+            let name = &self.priced[g].zone.as_ref()?.parts.first()?.name;
+            let row = found.tolerances.iter().find(|row| row.zone.as_ref().is_some_and(|zone| zone.name == *name));
             row.map(|row| row.after)
         };
-        let breaks = |&(inner, outer): &(usize, usize)| {
-            let own = |g: usize| self.priced[g].zone.as_ref().and_then(|zone| after(&zone.parts[0].name));
-            own(inner).zip(own(outer)).is_some_and(|(inner, outer)| inner > outer * (1.0 + ROUNDING))
+        let broken = |(inner, outer): (usize, usize)| {
+            let (tight, wide) = after(inner).zip(after(outer))?;
+            (tight > wide * (1.0 + ROUNDING)).then_some(Broken { inner, outer, tight, wide })
         };
-        let (inner, outer) = self.refinements().into_iter().find(breaks)?;
+        self.refinements().into_iter().find_map(broken)
+    }
+
+    /// Tasks without the tolerances found, which break a refinement.
+    pub(in crate::allocation) fn split(&self, found: &Allocation) -> Split {
+        let Some(broken) = self.broken(found) else { return Split { tasks: Vec::new(), is_exact: false } };
+        let Broken { inner, outer, tight, wide } = broken;
+        let is_ranged = |g: &usize| {
+            self.priced[*g].offers.len() > 1 && self.priced[*g].offers.iter().any(|offer| offer.min < offer.max)
+        };
+        let parts: Vec<Option<Self>> = if let Some(ranged) = [outer, inner].into_iter().find(is_ranged) {
+            (0..self.priced[ranged].offers.len()).map(|offer| self.with_offer(ranged, offer)).collect()
+        } else if self.priced[outer].offers.len() > 1 {
+            let wider = self.priced[outer].offers.iter().map(|offer| offer.min);
+            let wider = wider.filter(|&t| t > wide * (1.0 + ROUNDING)).fold(f64::INFINITY, f64::min);
+            vec![
+                self.clone().below(outer, wide).and_then(|task| task.below(inner, wide)),
+                self.clone().above(outer, wider),
+            ]
+        } else if self.priced[inner].offers.len() > 1 {
+            let tighter = self.priced[inner].offers.iter().map(|offer| offer.max);
+            let tighter = tighter.filter(|&t| t < tight * (1.0 - ROUNDING)).fold(0.0, f64::max);
+            vec![self.clone().below(inner, tighter), self.clone().above(outer, tight)]
+        } else {
+            return self.as_one(inner, outer);
+        };
+        let tasks = parts.into_iter().flatten().filter_map(Self::within_refinements).collect();
+        Split { tasks, is_exact: true }
+    }
+
+    /// Task with two free tolerances as one. It holds the optimum if the other tolerances are free too.
+    fn as_one(&self, inner: usize, outer: usize) -> Split {
+        let free = self.priced.iter().all(|group| group.offers.len() == 1);
+        let plain =
+            |g: usize| self.priced[g].offers.iter().all(|offer| offer.machine.is_none() && offer.made.is_none());
+        let ranges = [inner, outer].map(|g| (self.priced[g].tightest(), self.priced[g].loosest()));
+        if ranges[0].0 > ranges[1].1 {
+            return Split { tasks: Vec::new(), is_exact: true };
+        }
+        let is_exact = free && self.goal == Goal::LeastCost && self.setups.is_empty();
+        if let Some(both) = tied(&self.priced[outer], &self.priced[inner]).filter(|_| plain(inner) && plain(outer)) {
+            let mut task = self.clone();
+            task.priced[outer] = both;
+            task.priced.remove(inner);
+            return Split { tasks: vec![task], is_exact };
+        }
+        // Processes with a machine or a distribution of their own stay apart, with a tolerance between both.
+        let between = 0.5 * (ranges[0].0.max(ranges[1].0) + ranges[0].1.min(ranges[1].1));
+        let task = self.clone().below(inner, between).and_then(|task| task.above(outer, between));
+        Split { tasks: task.into_iter().collect(), is_exact: false }
+    }
+
+    /// Task with one offer of a group.
+    fn with_offer(&self, group: usize, offer: usize) -> Option<Self> {
         let mut task = self.clone();
-        match tied(&self.priced[outer], &self.priced[inner]) {
-            Some(both) => {
-                task.priced[outer] = both;
-                task.priced.remove(inner);
-            }
-            None => {
-                // Processes have tolerances of their own: those that the wider zone allows.
-                let most = self.priced[outer].zone.as_ref().and_then(|zone| after(&zone.parts[0].name))?;
-                task.priced[inner].offers.retain(|offer| offer.min <= most * (1.0 + ROUNDING));
-                task.priced[inner].offers.iter_mut().for_each(|offer| offer.max = offer.max.min(most));
-                task.priced[outer].offers.retain(|offer| offer.max >= most * (1.0 - ROUNDING));
-                task.priced[outer].offers.iter_mut().for_each(|offer| offer.min = offer.min.max(most));
-                if task.priced[inner].offers.is_empty() {
-                    return None;
-                }
-            }
+        task.priced[group].offers = vec![self.priced[group].offers[offer].clone()];
+        Some(task)
+    }
+
+    /// Task with a greatest tolerance of a group. Returns None if no offer is left.
+    fn below(mut self, group: usize, most: f64) -> Option<Self> {
+        let offers = &mut self.priced[group].offers;
+        offers.retain(|offer| offer.min <= most * (1.0 + ROUNDING));
+        offers.iter_mut().for_each(|offer| offer.max = offer.max.min(most.max(offer.min)));
+        (!self.priced[group].offers.is_empty()).then_some(self)
+    }
+
+    /// Task with a least tolerance of a group. Returns None if no offer is left.
+    fn above(mut self, group: usize, least: f64) -> Option<Self> {
+        let offers = &mut self.priced[group].offers;
+        offers.retain(|offer| offer.max >= least * (1.0 - ROUNDING));
+        offers.iter_mut().for_each(|offer| offer.min = offer.min.max(least.min(offer.max)));
+        (!self.priced[group].offers.is_empty()).then_some(self)
+    }
+
+    /// Task without the offers that break a refinement with every offer of the other zone. Returns None if none is left.
+    fn within_refinements(self) -> Option<Self> {
+        let mut task = self;
+        for (inner, outer) in task.refinements() {
+            let (least, most) = (task.priced[inner].tightest(), task.priced[outer].loosest());
+            task = task.below(inner, most)?.above(outer, least)?;
         }
         Some(task)
     }

@@ -8,6 +8,7 @@ use crate::allocation::search::common_factor::loosest;
 use crate::allocation::search::conclusion::doubts;
 use crate::allocation::search::driver::{AsWritten, Driver, Spent};
 use crate::allocation::search::linearization_point::required;
+use crate::allocation::search::refinement_search::RefinementSearch;
 use crate::allocation::search::trial::required_of;
 use crate::allocation::surface::joint_yield::joint;
 use crate::allocation::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
@@ -84,21 +85,10 @@ fn allocate_as(
 ) -> Result<Allocation, AllocateError> {
     task.check(problem, options)?;
     let found = allocate_once(problem, task, options, run, written)?;
-    let mut refined: Option<(AllocationTask, Allocation)> = None;
-    // Each repetition ties a pair of zones or removes an offer.
-    for _ in 0..2 * task.priced.len() {
-        let (task, last) = refined.as_ref().map_or((task, &found), |(task, last)| (task, last));
-        let Some(task) = task.refining(last).filter(|_| last.cost_after.is_some() && !run.stopped()) else { break };
-        let again = allocate_once(problem, &task, options, run, written)?;
-        refined = Some((task, again));
-    }
-    Ok(match refined {
-        None => found,
-        Some((_, last)) => Allocation { cost_before: found.cost_before, ..last },
-    })
+    RefinementSearch::new(problem, task, (options, run), written).refined(found)
 }
 
-fn allocate_once(
+pub(in crate::allocation) fn allocate_once(
     problem: &Problem,
     task: &AllocationTask,
     options: &AllocationOptions,

@@ -236,6 +236,92 @@ fn the_housing_meets_lagranges_condition() {
     assert!(after[0] == 0.02 && multiplier(0, 0.02) > own);
 }
 
+/// Study of two bores on one part: the middle of the first and its parallelism over 40 mm have costs.
+fn bores(zones: &str, limit: f64, costs: &str) -> String {
+    format!(
+        r#"
+[dimensions]
+h = {{ nominal = 50, tolerance = 0.02, unit = "mm" }}
+w = {{ nominal = 80, tolerance = 0.02, unit = "mm" }}
+[parts.p]
+A = {{ plane = [0, 0, 0], normal = "-z" }}
+b1 = {{ axis = [0, 0, "h"], along = "x", {zones}, length = 40, datums = "A" }}
+b2 = {{ axis = ["w", 0, "h"], along = "x", position = 0.1 }}
+m = {{ frame = [0, 0, "h"], z = "z", x = "x" }}
+[parts.q]
+at = [0, 0, 50]
+m = {{ frame = [0, 0, 0], z = "z", x = "x" }}
+t = {{ point = [100, 0, 0] }}
+[joints]
+j = {{ rigid = ["p.m", "q.m"] }}
+[characteristics]
+d = {{ of = "p.b2", from = "p.b1", along = "y", unit = "mm", lower = -{limit}, upper = {limit}, target_cpk = 1.0 }}
+[costs]
+{costs}
+"#
+    )
+}
+
+/// Least cost by hand: three sigma of the height of the second bore above the first are the root of `16 Tpar^2 + Tpos^2 + 0.05^2`. All choices that
+/// keep the limit and the refinement are enumerated; a free parallelism is as wide as the limit and the position allow.
+fn least_cost(limit: f64, position: &[(f64, f64)], parallelism: &dyn Fn(f64) -> Option<f64>) -> f64 {
+    let of = |&(wide, cost): &(f64, f64)| {
+        let room = limit * limit - wide * wide - 0.05 * 0.05;
+        let most = wide.min((room.max(0.0) / 16.0).sqrt());
+        parallelism(most).map_or(f64::INFINITY, |other| cost + other)
+    };
+    position.iter().map(of).fold(f64::INFINITY, f64::min)
+}
+
+/// The cheapest pair of processes that keeps the refinement need not hold the process of the cheapest pair without it. A list costs what is
+/// written, and the free tolerance has the relative error of the limit by slopes, 1e-6.
+#[test]
+fn processes_of_refined_zones_are_chosen_together() {
+    let position = |tight: f64| [(0.02, tight), (0.04, 1.0)];
+    let of_position = |tight: f64| {
+        format!(
+            "\"p.b1.position\" = {{ processes = [{{ name = \"g\", tolerance = 0.02, cost = {tight} }}, {{ name = \"m\", tolerance = 0.04, cost = 1.0 }}] }}\n"
+        )
+    };
+    let three = [(0.015, 9.0), (0.03, 2.5), (0.05, 1.0)];
+    for (own, tight, limit) in [(&three[..], 2.0, 0.20857), (&three[1..], 2.0, 0.20857), (&three[..], 2.0, 0.1)] {
+        let names = ["g", "m", "n"];
+        let list: Vec<String> = (own.iter().zip(&names[3 - own.len()..]))
+            .map(|((t, cost), name)| format!("{{ name = \"{name}\", tolerance = {t}, cost = {cost} }}"))
+            .collect();
+        let costs = of_position(tight) + &format!("\"p.b1.parallelism\" = {{ processes = [{}] }}", list.join(", "));
+        let study = read(&bores("position = 0.1, parallelism = 0.05", limit, &costs));
+        let found = allocated(&study);
+        let cheapest = |most: f64| own.iter().filter(|(t, _)| *t <= most).map(|(_, cost)| *cost).reduce(f64::min);
+        let expected = least_cost(limit, &position(tight), &cheapest);
+        assert!(expected.is_finite());
+        let rows = tolerances(&study, &found);
+        let [wide, narrow] = ["p.b1.position", "p.b1.parallelism"].map(|name| after(&rows, name));
+        assert!(narrow <= wide * (1.0 + 1e-9), "{rows:?}");
+        assert!(relative(found.cost_after.unwrap(), expected) < 1e-12, "{:?}, {expected}", found.cost_after);
+        assert_eq!(found.status, Status::Optimal);
+        study.rewritten(&found.problem).unwrap();
+    }
+    for (tight, most) in [(1.2, 0.06), (1.2, 0.03)] {
+        let costs = of_position(tight)
+            + &format!("\"p.b1.parallelism\" = {{ model = \"reciprocal\", a = 1.0, b = 1, max = {most} }}");
+        let study = read(&bores("position = 0.1, parallelism = 0.05", 0.20857, &costs));
+        let found = allocated(&study);
+        let expected = least_cost(0.20857, &position(tight), &|t| Some(1.0 + 1.0 / t.min(most)));
+        assert!(relative(found.cost_after.unwrap(), expected) < 1e-6, "{:?}, {expected}", found.cost_after);
+        assert_eq!(found.status, Status::Optimal);
+    }
+}
+
+/// No pair of processes keeps the refinement: the result says so, and has no tolerances.
+#[test]
+fn processes_that_break_every_refinement_are_infeasible() {
+    let costs = "\"p.b1.position\" = { processes = [{ name = \"g\", tolerance = 0.02, cost = 2 }] }\n\"p.b1.parallelism\" = { processes = [{ name = \"m\", tolerance = 0.03, cost = 2.5 }, { name = \"n\", tolerance = 0.05, cost = 1.0 }] }";
+    let found = allocated(&read(&bores("position = 0.1, parallelism = 0.05", 0.5, costs)));
+    assert_eq!(found.status, Status::Infeasible);
+    assert!(found.cost_after.is_none() && found.after.is_none());
+}
+
 #[test]
 fn wrong_costs_name_the_line_and_the_remedy() {
     let zone = |name: &str| format!("\"{name}\" = {{ model = \"reciprocal\", b = 0.1 }}");
