@@ -1,5 +1,7 @@
 //! Faults of zones and floats of an assembly in space.
 
+use std::fmt;
+
 /// A zone or a float of an assembly in space that says nothing usable.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -119,14 +121,12 @@ pub enum ZoneFault {
         zone: String,
     },
     /// Bounds of a cost with which an orientation could be wider than the location that it refines.
-    #[error("with {key} = {given} `{zone}` could leave `{inner}` wider than `{outer}`, half of which is {bound}")]
+    #[error("{choice} lets {}", beyond(*is_inner, (inner, outer), *bound))]
     CostBeyondRefinement {
-        /// The zone with the cost.
-        zone: String,
-        /// Key of the bound.
-        key: &'static str,
-        /// Bound as written.
-        given: f64,
+        /// Choice of the cost that breaks the refinement.
+        choice: RefinedChoice,
+        /// True if the orientation has the cost, false if the location has it.
+        is_inner: bool,
         /// Key of the orientation.
         inner: &'static str,
         /// Key of the location.
@@ -134,6 +134,48 @@ pub enum ZoneFault {
         /// Half of the zone without a cost.
         bound: f64,
     },
+}
+
+/// Part of a cost that allows a tolerance.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RefinedChoice {
+    /// Bound of the tolerance.
+    Bound {
+        /// Key of the bound.
+        key: &'static str,
+        /// Bound as written.
+        given: f64,
+    },
+    /// Table without a point that keeps the refinement.
+    Table {
+        /// Half width of the point nearest to the other zone.
+        near: f64,
+    },
+    /// Process of a list.
+    Process {
+        /// Name of the process.
+        name: String,
+        /// Half width as written.
+        given: f64,
+    },
+}
+
+impl fmt::Display for RefinedChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bound { key, given } => write!(f, "{key} = {given}"),
+            Self::Table { near } => write!(f, "every point of the table, the nearest at {near},"),
+            Self::Process { name, given } => write!(f, "the process `{name}` of {given}"),
+        }
+    }
+}
+
+/// Excess of an orientation over its location, in words.
+fn beyond(is_inner: bool, (inner, outer): (&str, &str), bound: f64) -> String {
+    match is_inner {
+        true => format!("`{inner}` exceed `{outer}` (half width {bound})"),
+        false => format!("`{inner}` (half width {bound}) exceed `{outer}`"),
+    }
 }
 
 /// Names in backquotes.
@@ -165,9 +207,16 @@ impl ZoneFault {
             Self::CostOfFormula { .. } => "give the cost to the dimension, or write the width as a number".into(),
             Self::CostOfNothing { .. } => "write the present width, from which to start".into(),
             Self::CostOfUneven { .. } => "leave the cost out, or write an even zone without `outward` or `side`".into(),
-            Self::CostBeyondRefinement { key, bound, .. } => {
-                format!("write {key} = {bound}, or give the other zone a cost too")
-            }
+            Self::CostBeyondRefinement { choice, is_inner, bound, .. } => match choice {
+                RefinedChoice::Bound { key, .. } => {
+                    format!("write {key} = {bound}, or give the other zone a cost too")
+                }
+                RefinedChoice::Table { .. } => {
+                    let side = if *is_inner { "at most" } else { "at least" };
+                    format!("write a point of {side} {bound}, or give the other zone a cost too")
+                }
+                RefinedChoice::Process { .. } => "leave it out, or give the other zone a cost too".into(),
+            },
         }
     }
 }

@@ -322,6 +322,25 @@ fn processes_that_break_every_refinement_are_infeasible() {
     assert!(found.cost_after.is_none() && found.after.is_none());
 }
 
+/// The limit is so wide that every table ends at the zone without a cost. The allowance is that of rounding.
+#[test]
+fn a_zone_without_a_cost_bounds_a_table() {
+    let allocate = |costs: &str| {
+        let study = read(&bores("position = 0.1, parallelism = 0.05", 2.0, costs));
+        tolerances(&study, &allocated(&study))
+    };
+    let rows = allocate("\"p.b1.parallelism\" = { table = [[0.01, 5], [0.05, 3], [0.2, 2]] }");
+    assert!(relative(after(&rows, "p.b1.parallelism"), 0.05) < 1e-6, "{rows:?}");
+    let rows = allocate("\"p.b1.parallelism\" = { table = [[0.01, 5], [0.04, 3]] }");
+    assert!(relative(after(&rows, "p.b1.parallelism"), 0.04) < 1e-6, "{rows:?}");
+    // Three sigma are the root of 0.0125 + Tpos^2, with Tpos of at least 0.025.
+    for (limit, status) in [(0.1130, Status::Infeasible), (0.1150, Status::Optimal)] {
+        let costs = "\"p.b1.position\" = { table = [[0.001, 5], [0.1, 2]] }";
+        let found = allocated(&read(&bores("position = 0.1, parallelism = 0.05", limit, costs)));
+        assert_eq!(found.status, status, "{limit}");
+    }
+}
+
 #[test]
 fn wrong_costs_name_the_line_and_the_remedy() {
     let zone = |name: &str| format!("\"{name}\" = {{ model = \"reciprocal\", b = 0.1 }}");
@@ -342,14 +361,32 @@ fn wrong_costs_name_the_line_and_the_remedy() {
         (
             both,
             "\"block.bore.perpendicularity\" = { model = \"reciprocal\", b = 0.1, max = 0.06 }".to_owned(),
-            "wider than `position`",
+            "max = 0.06 lets `perpendicularity` exceed `position` (half width 0.05)",
             "write max = 0.05",
         ),
         (
             both,
             "\"block.bore.position\" = { model = \"reciprocal\", b = 0.1, min = 0.005 }".to_owned(),
-            "wider than `position`",
+            "min = 0.005 lets `perpendicularity` (half width 0.01) exceed `position`",
             "write min = 0.01",
+        ),
+        (
+            both,
+            "\"block.bore.perpendicularity\" = { table = [[0.06, 3], [0.2, 2]] }".to_owned(),
+            "every point of the table, the nearest at 0.06, lets `perpendicularity` exceed `position`",
+            "write a point of at most 0.05",
+        ),
+        (
+            both,
+            "\"block.bore.perpendicularity\" = { processes = [{ name = \"m\", tolerance = 0.04, cost = 2 }, { name = \"n\", tolerance = 0.06, cost = 1 }] }".to_owned(),
+            "the process `n` of 0.06 lets `perpendicularity` exceed `position` (half width 0.05)",
+            "leave it out",
+        ),
+        (
+            both,
+            "\"block.bore.position\" = { processes = [{ name = \"m\", tolerance = 0.004, cost = 2 }] }".to_owned(),
+            "the process `m` of 0.004 lets `perpendicularity` (half width 0.01) exceed `position`",
+            "leave it out",
         ),
         ("position = 0.1", zone("block.hole"), "block.hole", "block.bore"),
     ];

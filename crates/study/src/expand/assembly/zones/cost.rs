@@ -5,10 +5,11 @@
 use std::ops::Range;
 
 use super::entry::{ZONES, ZoneKind, ZonedFeature};
+use super::frame::number;
 use super::lines::{Lines, MadeZone};
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::expand::{Tree, Value, ZonePlace};
-use crate::faults::zone_fault::ZoneFault;
+use crate::faults::zone_fault::{RefinedChoice, ZoneFault};
 use crate::tree::Key;
 
 /// A line of `[costs]` for a zone.
@@ -187,16 +188,88 @@ fn refined(
     let Some(bound) = label.half.filter(|_| other.table.is_none_or(|table| table.get("at").is_none())) else {
         return Ok(None);
     };
-    let key = if is_inner { "max" } else { "min" };
-    match entry.get(key).map(|given| (super::frame::number(given), given)) {
-        // Processes and tables have bounds of their own.
-        None if entry.get("model").is_some() || entry.get("formula").is_some() => Ok(Some((key, Value::Number(bound)))),
-        None => Ok(None),
-        Some((Some(given), tree)) if (is_inner && given > bound) || (!is_inner && given < bound) => {
-            let (inner, outer) = if is_inner { (zone.key, other.key) } else { (other.key, zone.key) };
-            let found = ZoneFault::CostBeyondRefinement { zone: cost.zone.clone(), key, given, inner, outer, bound };
-            Err(refusal(tree.span.clone(), format!("costs.{}.{key}", cost.line), found))
+    let (inner, outer) = if is_inner { (zone.key, other.key) } else { (other.key, zone.key) };
+    Bounded { cost, is_inner, inner, outer, bound }.key(entry)
+}
+
+/// Cost of one of two zones, the other of which has no cost and bounds it.
+struct Bounded<'c> {
+    cost: &'c ZoneCost,
+    is_inner: bool,
+    inner: &'static str,
+    outer: &'static str,
+    /// Half width of the zone without a cost.
+    bound: f64,
+}
+
+impl Bounded<'_> {
+    /// True if a half width breaks the refinement.
+    fn is_beyond(&self, half: f64) -> bool {
+        if self.is_inner { half > self.bound } else { half < self.bound }
+    }
+
+    /// Bound as a key of the cost. Returns None if the cost keeps it as written.
+    fn key(&self, entry: &Tree) -> Result<Option<(&'static str, Value)>, Fault> {
+        let (key, opposite) = if self.is_inner { ("max", "min") } else { ("min", "max") };
+        for key in [opposite, key] {
+            let Some((given, tree)) = entry.get(key).and_then(|tree| Some((number(tree)?, tree))) else { continue };
+            if self.is_beyond(given) {
+                return Err(self.refusal(tree, key, RefinedChoice::Bound { key, given }));
+            }
         }
-        Some(_) => Ok(None),
+        let with_bound = Ok(Some((key, Value::Number(self.bound))));
+        match (entry.get("processes"), entry.get("table")) {
+            _ if entry.get(key).is_some() => Ok(None),
+            (Some(list), _) => self.keeps_processes(list).map(|()| None),
+            (_, Some(table)) => match self.ends(table) {
+                Some([near, _]) if self.is_beyond(near) => {
+                    Err(self.refusal(table, "table", RefinedChoice::Table { near }))
+                }
+                Some([_, far]) if self.is_beyond(far) => with_bound,
+                _ => Ok(None),
+            },
+            _ if entry.get("model").is_some() || entry.get("formula").is_some() => with_bound,
+            _ => Ok(None),
+        }
+    }
+
+    /// Ends of a table of points, the one that may break the refinement last. Returns None if a point is none.
+    fn ends(&self, table: &Tree) -> Option<[f64; 2]> {
+        let Value::Array(points) = &table.value else { return None };
+        let half = |point: &Tree| match &point.value {
+            Value::Array(pair) => number(pair.first()?),
+            _ => None,
+        };
+        let halves: Vec<f64> = points.iter().map(half).collect::<Option<_>>()?;
+        let least = halves.iter().copied().reduce(f64::min)?;
+        let most = halves.iter().copied().reduce(f64::max)?;
+        Some(if self.is_inner { [least, most] } else { [most, least] })
+    }
+
+    /// Checks that no process of a list breaks the refinement.
+    fn keeps_processes(&self, list: &Tree) -> Result<(), Fault> {
+        let Value::Array(processes) = &list.value else { return Ok(()) };
+        for (index, process) in processes.iter().enumerate() {
+            let far = if self.is_inner { "max" } else { "min" };
+            let given = ["tolerance", far].into_iter().find_map(|key| Some((key, process.get(key)?)));
+            let Some((key, given, tree)) = given.and_then(|(key, tree)| Some((key, number(tree)?, tree))) else {
+                continue;
+            };
+            if self.is_beyond(given) {
+                let name = match process.get("name").map(|name| &name.value) {
+                    Some(Value::Text(name)) => name.clone(),
+                    _ => format!("{}", index + 1),
+                };
+                let choice = RefinedChoice::Process { name, given };
+                return Err(self.refusal(tree, &format!("processes[{}].{key}", index + 1), choice));
+            }
+        }
+        Ok(())
+    }
+
+    fn refusal(&self, tree: &Tree, key: &str, choice: RefinedChoice) -> Fault {
+        let Self { cost, is_inner, inner, outer, bound } = *self;
+        let found = ZoneFault::CostBeyondRefinement { choice, is_inner, inner, outer, bound };
+        refusal(tree.span.clone(), format!("costs.{}.{key}", cost.line), found)
     }
 }
