@@ -108,6 +108,12 @@ pub enum ZoneFault {
         /// The zone.
         zone: String,
     },
+    /// A cost of a zone whose dimensions do not follow its width by numbers alone.
+    #[error("`{zone}` has a cost, and a length or a place that its width is divided by is a formula")]
+    CostOfFormulaArm {
+        /// The zone.
+        zone: String,
+    },
     /// A cost of a zone of width 0.
     #[error("`{zone}` has a cost and the width 0")]
     CostOfNothing {
@@ -205,6 +211,9 @@ impl ZoneFault {
             Self::TwoCosts { .. } => "keep one of them".into(),
             Self::CostOfIdle { .. } => "leave the cost out, or name a joint that touches the feature".into(),
             Self::CostOfFormula { .. } => "give the cost to the dimension, or write the width as a number".into(),
+            Self::CostOfFormulaArm { .. } => {
+                "write the length of the feature, or the places of the pattern across its axes, as numbers".into()
+            }
             Self::CostOfNothing { .. } => "write the present width, from which to start".into(),
             Self::CostOfUneven { .. } => "leave the cost out, or write an even zone without `outward` or `side`".into(),
             Self::CostBeyondRefinement { choice, is_inner, bound, .. } => match choice {

@@ -341,6 +341,31 @@ fn a_zone_without_a_cost_bounds_a_table() {
     }
 }
 
+/// The farthest hole is at 50 mm from the middle of the pattern, whatever the height at which the holes begin. The zone turns the holes by half its
+/// width over 50 mm and the root of 2.
+#[test]
+fn a_height_along_the_axes_of_a_pattern_is_no_lever() {
+    let holes = |height: &str| {
+        let hole = |name: &str, x: f64| {
+            format!("{name} = {{ axis = [{x:?}, 0, {height}], along = \"z\", x = \"x\" }}\n[parts.p.patterns]\n")
+        };
+        let second = hole("h2", 80.0);
+        let first = hole("h1", -20.0).replace("[parts.p.patterns]\n", "");
+        bores("position = 0.1", 0.5, "\"p.bolts.position\" = { model = \"reciprocal\", b = 1 }").replace(
+            "[parts.q]",
+            &format!("{first}{second}bolts = {{ of = [\"h1\", \"h2\"], position = 0.2 }}\n[parts.q]"),
+        )
+    };
+    let [plain, formula] = ["50", "\"h\""].map(|height| {
+        let text = holes(height).replace("of = \"p.b2\", from = \"p.b1\"", "of = \"p.h2\", from = \"p.b1\"");
+        let study = read(&text);
+        let dimensions = study.problem.dimensions();
+        let turn = dimensions.iter().find(|one| one.name() == "p.bolts.tilt").map(|one| one.half_band());
+        turn.expect("a turn of the pattern")
+    });
+    assert!(relative(plain, 0.1 / 50.0 / 2f64.sqrt()) < 1e-12 && plain == formula, "{plain}, {formula}");
+}
+
 #[test]
 fn wrong_costs_name_the_line_and_the_remedy() {
     let zone = |name: &str| format!("\"{name}\" = {{ model = \"reciprocal\", b = 0.1 }}");
@@ -351,6 +376,12 @@ fn wrong_costs_name_the_line_and_the_remedy() {
         ("position = 0.1", zone("block.bore.runout"), "has no `runout`", "write \"block.bore.position\""),
         ("roundness = 0.1", zone("block.bore"), "moves nothing", "leave the cost out"),
         ("position = 0", zone("block.bore"), "the width 0", "write the present width"),
+        (
+            "length = \"10*w\", perpendicularity = 0.02",
+            zone("block.bore"),
+            "a length or a place that its width is divided by is a formula",
+            "write the length of the feature",
+        ),
         ("position = \"w\"", zone("block.bore"), "its width is a formula", "give the cost to the dimension"),
         (
             "position = 0.1",

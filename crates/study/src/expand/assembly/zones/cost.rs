@@ -152,6 +152,7 @@ fn made<'l>(cost: &ZoneCost, lines: &'l Lines) -> Result<&'l MadeZone, Fault> {
         None => refused(ZoneFault::CostOfIdle { zone }),
         Some(made) if made.label.half.is_none() => refused(ZoneFault::CostOfFormula { zone }),
         Some(made) if made.label.half == Some(0.0) => refused(ZoneFault::CostOfNothing { zone }),
+        Some(made) if made.has_formula => refused(ZoneFault::CostOfFormulaArm { zone }),
         Some(made) if made.is_uneven || made.members.is_empty() => refused(ZoneFault::CostOfUneven { zone }),
         Some(made) => Ok(made),
     }

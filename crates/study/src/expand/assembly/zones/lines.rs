@@ -59,6 +59,8 @@ pub(super) struct MadeZone {
     pub(super) width: Option<String>,
     /// True if its lines do not follow the width, such as a band that is not about 0.
     pub(super) is_uneven: bool,
+    /// True if the factor of a line is a formula, such as a lever arm.
+    pub(super) has_formula: bool,
 }
 
 /// A dimension within a band, by the text that formulas need and by its name.
@@ -299,6 +301,7 @@ impl Lines {
         match half.filter(|_| plain) {
             // A bonus puts the places in a line of its own.
             Some(half) => zone.members.push((if table { format!("{name}{UNIT}") } else { name.to_owned() }, half)),
+            None if name.ends_with(UNIT) => zone.has_formula = true,
             None => zone.is_uneven = true,
         }
     }
@@ -306,7 +309,7 @@ impl Lines {
     fn zone_of(&mut self, label: &ZoneLabel) -> &mut MadeZone {
         let place = self.zones.iter().position(|zone| zone.label.name == label.name).unwrap_or_else(|| {
             let label = label.clone();
-            self.zones.push(MadeZone { label, members: Vec::new(), width: None, is_uneven: false });
+            self.zones.push(MadeZone { label, members: Vec::new(), width: None, is_uneven: false, has_formula: false });
             self.zones.len() - 1
         });
         &mut self.zones[place]

@@ -185,9 +185,13 @@ fn lever(feature: &ZonedFeature<'_>, features: &[&ZonedFeature<'_>], lines: &Lin
 /// Distance of the farthest axis from the middle, or of the first one if the places are formulas.
 fn radius(levers: &[[Extent; 3]], across: [[f64; 3]; 2], lines: &Lines) -> Extent {
     let number = |lever: &[Extent; 3]| -> Option<f64> {
-        let [x, y, z] = lever.each_ref().map(Extent::number);
-        let lever = [x?, y?, z?];
-        Some(libm::hypot(dot(lever, across[0]), dot(lever, across[1])))
+        // A place along the axes has no part in the distance.
+        let is_across = |i: usize| across.iter().any(|axis| axis[i].abs() > 1e-12);
+        let mut numbers = [0.0; 3];
+        for (i, place) in lever.iter().enumerate().filter(|&(i, _)| is_across(i)) {
+            numbers[i] = place.number()?;
+        }
+        Some(libm::hypot(dot(numbers, across[0]), dot(numbers, across[1])))
     };
     let numbers: Option<Vec<f64>> = levers.iter().map(number).collect();
     match numbers {
