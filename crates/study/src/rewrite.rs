@@ -110,7 +110,10 @@ impl Study {
                     };
                     edits.push((span, cut(2.0 * half)));
                     changed_zones.push(part);
-                    zone_lines.push(line);
+                    // Two zones of a feature stand in one entry.
+                    if !zone_lines.contains(&line) {
+                        zone_lines.push(line);
+                    }
                 }
                 continue;
             }

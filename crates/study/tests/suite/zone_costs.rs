@@ -170,7 +170,10 @@ fn an_orientation_never_exceeds_its_location() {
         assert!(relative(found.cost_after.unwrap(), 0.001 / wide + dear / tight) < 1e-9);
         assert!(relative(found.cost_before.unwrap(), 0.001 / 0.05 + dear / 0.01) < 1e-9);
         assert!(!matches!(found.status, Status::Infeasible | Status::NoFeasiblePointFound), "{:?}", found.status);
-        let again = read(&study.rewritten(&found.problem).unwrap().text);
+        let anew = study.rewritten(&found.problem).unwrap();
+        // Both zones stand in the one entry of the feature.
+        assert_eq!(anew.entries.matches("bore = {").count(), 1, "{}", anew.entries);
+        let again = read(&anew.text);
         let wanted = found.after.as_ref().unwrap().characteristics[0].moments.unwrap().sigma();
         assert!(relative(sigma(&again), wanted) < 2e-5);
     }
