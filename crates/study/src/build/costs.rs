@@ -96,6 +96,7 @@ struct Offers {
 pub(crate) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Result<Vec<Priced>, Fault> {
     let names: Vec<&str> = file.costs.0.iter().map(|(name, _)| name.get_ref().as_str()).collect();
     let mut groups: Vec<Group<'_>> = Vec::new();
+    zone_cost::check(file)?;
     for (name, entry) in &file.costs.0 {
         let entry = entry.get_ref();
         let key = format!("costs.{}", name.get_ref());

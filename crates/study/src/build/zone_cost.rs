@@ -44,6 +44,37 @@ fn named(problem: &Problem, name: &str) -> Vec<usize> {
     all.filter(|(_, one)| one.name() == name || one.zone() == Some(name)).map(|(d, _)| d).collect()
 }
 
+/// Checks that `within` names the cost of another zone, and that no end of a zone is held.
+pub(crate) fn check(file: &StudyFile) -> Result<(), Fault> {
+    let zones: Vec<&str> = (file.costs.0.iter())
+        .filter(|(_, entry)| entry.get_ref().of.is_some())
+        .map(|(name, _)| name.get_ref().as_str())
+        .collect();
+    for (name, entry) in &file.costs.0 {
+        let (entry, key) = (entry.get_ref(), format!("costs.{}", name.get_ref()));
+        let apart = |key: &'static str, to: &str, instead| StudyFault::DoesNotApply { key, to: to.to_owned(), instead };
+        if let Some(within) = &entry.within {
+            let at = |found| Err(fault(within.span(), format!("{key}.within"), found));
+            if entry.of.is_none() {
+                return at(apart("within", "the cost of a dimension", "a zone refines another one: leave it out"));
+            }
+            let outer = within.get_ref();
+            if outer == name.get_ref() || !zones.contains(&outer.as_str()) {
+                let others = || zones.iter().copied().filter(|zone| zone != name.get_ref());
+                let nearest = nearest(outer, others()).map(str::to_owned);
+                let known = others().map(str::to_owned).collect();
+                let what = "other zone with a cost";
+                return at(StudyFault::UnknownWord { what, found: outer.clone(), nearest, known });
+            }
+        }
+        if let (Some(side), Some(_)) = (&entry.fixed_side, &entry.of) {
+            let found = apart("fixed_side", "the cost of a zone", "a zone lies about its nominal place: leave it out");
+            return Err(fault(side.span(), format!("{key}.fixed_side"), found));
+        }
+    }
+    Ok(())
+}
+
 /// Half width of the zone of a cost. Returns None for other costs.
 pub(crate) fn present(entry: &CostEntry, name: &Spanned<String>, problem: &Problem) -> Result<Option<f64>, Fault> {
     let Some(of) = &entry.of else { return Ok(None) };

@@ -422,6 +422,25 @@ fn wrong_costs_name_the_line_and_the_remedy() {
             "the process `m` of 0.004 lets `perpendicularity` (half width 0.01) exceed `position`",
             "leave it out",
         ),
+        ("position = 0.1", zone("block.bore").replace(" }", ", within = \"nonsense\" }"), "nonsense", "zone with a cost"),
+        (
+            both,
+            zone("block.bore.position") + "\n" + &zone("block.bore.perpendicularity").replace(" }", ", within = \"t\" }"),
+            "`within` means nothing for",
+            "the feature gives it: leave it out",
+        ),
+        (
+            "position = 0.1",
+            zone("block.bore").replace(" }", ", fixed_side = \"lower\" }"),
+            "`fixed_side` means nothing for",
+            "leave it out",
+        ),
+        (
+            "position = 0.1",
+            zone("block.bore").replace(" }", ", unit = \"mm\" }"),
+            "`unit` means nothing for",
+            "the feature gives it: leave it out",
+        ),
         ("position = 0.1", zone("block.hole"), "block.hole", "block.bore"),
     ];
     for (bore, costs, what, remedy) in cases {

@@ -133,6 +133,9 @@ pub(super) fn write(
         let mut of: Vec<(Key, Tree)> =
             made.members.iter().map(|(name, band)| (key(name), plain(Value::Number(band / half)))).collect();
         of.extend(made.width.iter().map(|name| (key(name), plain(Value::Number(2.0)))));
+        if faults.take(plain_keys(entry, &cost)).is_none() {
+            continue;
+        }
         let refinement = faults.take(refined(entry, &cost, features, &names)).flatten();
         let Some(keys) = entry.entries_mut() else { continue };
         keys.extend(refinement.map(|(name, value)| (key(name), plain(value))));
@@ -156,6 +159,18 @@ fn made<'l>(cost: &ZoneCost, lines: &'l Lines) -> Result<&'l MadeZone, Fault> {
         Some(made) if made.is_uneven || made.members.is_empty() => refused(ZoneFault::CostOfUneven { zone }),
         Some(made) => Ok(made),
     }
+}
+
+/// Checks that a line has no key that the zone gives.
+fn plain_keys(entry: &Tree, cost: &ZoneCost) -> Result<(), Fault> {
+    let given = ["of", "unit"].into_iter().find_map(|key| Some((key, entry.get(key)?)));
+    given.map_or(Ok(()), |(key, tree)| Err(made_by_zone(cost, key, tree)))
+}
+
+fn made_by_zone(cost: &ZoneCost, key: &'static str, tree: &Tree) -> Fault {
+    let to = "the cost of a zone of a feature".to_owned();
+    let apart = StudyFault::DoesNotApply { key, to, instead: "the feature gives it: leave it out" };
+    fault(tree.span.clone(), format!("costs.{}.{key}", cost.line), apart)
 }
 
 /// Bound that keeps an orientation within the location of its feature, as a key of its cost. A location without a cost
@@ -183,7 +198,11 @@ fn refined(
     let Some(other) = other else { return Ok(None) };
     let label = other.label(&feature.full());
     if let Some((_, line)) = names.iter().find(|(zone, _)| *zone == label.name) {
-        return Ok(is_inner.then(|| ("within", Value::Text(line.clone()))));
+        return match entry.get("within").filter(|_| is_inner) {
+            None => Ok(is_inner.then(|| ("within", Value::Text(line.clone())))),
+            Some(within) if matches!(&within.value, Value::Text(own) if own == line) => Ok(None),
+            Some(within) => Err(made_by_zone(cost, "within", within)),
+        };
     }
     // A zone whose width is a formula, or that a bonus widens, sets no bound.
     let Some(bound) = label.half.filter(|_| other.table.is_none_or(|table| table.get("at").is_none())) else {
