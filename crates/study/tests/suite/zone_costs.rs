@@ -441,6 +441,12 @@ fn wrong_costs_name_the_line_and_the_remedy() {
             "`unit` means nothing for",
             "the feature gives it: leave it out",
         ),
+        (
+            both,
+            zone("block.bore.perpendiculrity"),
+            "has no `perpendiculrity`",
+            "write \"block.bore.perpendicularity\"",
+        ),
         ("position = 0.1", zone("block.hole"), "block.hole", "block.bore"),
     ];
     for (bore, costs, what, remedy) in cases {

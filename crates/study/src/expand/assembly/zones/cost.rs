@@ -11,6 +11,7 @@ use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::expand::{Tree, Value, ZonePlace};
 use crate::faults::zone_fault::{RefinedChoice, ZoneFault};
 use crate::tree::Key;
+use sensitol_numeric::names::nearest;
 
 /// A line of `[costs]` for a zone.
 pub(super) struct ZoneCost {
@@ -102,15 +103,16 @@ fn named(key: &Key, zoned: &[Zoned]) -> Result<Option<ZoneCost>, Fault> {
     if one.keys.contains(&zone) {
         return of(one, zone);
     }
-    // Other endings are those of the dimensions that a zone makes.
-    let is_zone = zone == "within" || ZONES.iter().any(|(known, ..)| *known == zone);
-    match is_zone {
-        true => refused(ZoneFault::CostOfMissing {
-            feature: one.name.clone(),
-            zone: zone.to_owned(),
-            zones: one.keys.clone(),
-        }),
-        false => Ok(None),
+    // Other endings are those of the dimensions that a zone makes, such as `at`, which are like no zone.
+    let all = ZONES.iter().map(|(known, ..)| *known).chain(["within"]);
+    match nearest(zone, all) {
+        Some(meant) => {
+            // The zone that is meant comes first, since it is the one to write.
+            let mut zones = one.keys.clone();
+            zones.sort_by_key(|key| *key != meant);
+            refused(ZoneFault::CostOfMissing { feature: one.name.clone(), zone: zone.to_owned(), zones })
+        }
+        None => Ok(None),
     }
 }
 
