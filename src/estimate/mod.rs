@@ -45,7 +45,7 @@ pub(crate) use crate::estimate::normal_space::{Columns, NormalSpace};
 pub(crate) use crate::estimate::ordered_points::OrderedPoints;
 pub use crate::estimate::output_correlation::OutputCorrelation;
 pub(crate) use crate::estimate::output_correlation::{
-    common_rejects, most_points_together, output_correlations, pairs,
+    common_rejects, counted_condition, most_points_given, most_points_together, output_correlations, pairs,
 };
 pub(crate) use crate::estimate::rank_quantile::{SampleQuantile, reported_quantiles};
 pub(crate) use crate::estimate::replicate_sums::ReplicateSums;

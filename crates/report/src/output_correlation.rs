@@ -55,10 +55,11 @@ pub(super) fn all_limits(yield_: &str, error: &str, requirement: Option<&Judged>
     format!("all limits at once: yield {yield_}{error}{target}")
 }
 
-/// Sentence with the yield of the assemblies that keep another characteristic's limits. None if the characteristic is given no other.
-pub(super) fn conditional(one: &Characteristic, found: Option<&ConditionalYield>) -> Option<String> {
+/// Sentence with the yield of the assemblies that keep another characteristic's limits, or with the reason why it is unknown. None if the
+/// characteristic is given no other.
+pub(super) fn conditional(one: &Characteristic, found: Option<&ConditionalYield>, reason: &str) -> Option<String> {
     let given = short(one.given()?);
-    let Some(of) = found else { return Some(format!("yield of those that keep {given} unknown")) };
+    let Some(of) = found else { return Some(format!("yield of those that keep {given} unknown: {reason}")) };
     let text = conditional_yield(of);
     let interval = of.interval.map(|ends| ends.map(yielded));
     let interval = interval.map_or_else(String::new, |[low, high]| format!(", 95 % interval {low} to {high}"));

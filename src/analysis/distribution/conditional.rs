@@ -4,16 +4,24 @@
 //! P(own kept | other kept) = P(both kept) / P(other kept)
 //! ```
 //!
-//! It is the own yield if both characteristics depend on different independent inputs.
+//! If few assemblies keep the other limits, the difference of the yields is smaller than its error. Both are counted at points of a cheap
+//! model then, and the yield stays None for a costly one. It is the own yield if both characteristics depend on different independent inputs.
 
 use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::distribution::yield_selection::joint_of;
 use crate::analysis::sampling::sample_budget::SampleBudget;
-use crate::estimate::{ConditionalYield, Verified, conditions};
+use crate::estimate::{ConditionalYield, Verified, conditions, counted_condition, most_points_given};
 use crate::method::Options;
 use crate::problem::Problem;
 use sensitol_numeric::law::SurfaceLaw;
 use sensitol_numeric::verdict;
+
+/// Greatest error of a joint yield, as a part of the share of assemblies that count. Two of them reach from 0 to 1.
+const MOST_ERROR: f64 = 0.5;
+/// Error of a conditional yield above which points of a cheap model are counted too.
+const ROUGH: f64 = 1e-2;
+/// Error of a conditional yield, as a part of the yield itself, above which points of a cheap model are counted too.
+const ROUGH_SHARE: f64 = 0.5;
 
 /// Sets the conditional yield of every characteristic that is given another. It stays None if the yields or their errors are unknown.
 pub(in crate::analysis) fn condition(
@@ -46,16 +54,39 @@ fn of_pair(
         let interval = characteristics[c].yield_interval()?;
         return Some(ConditionalYield { given: name.to_owned(), value: 1.0 - own, interval: Some(interval) });
     }
+    let by_yields = by_yields(problem, options, left, characteristics, laws, [c, given], 1.0 - other);
+    let rough = by_yields.is_none_or(|of| of.error > ROUGH || of.error > ROUGH_SHARE * of.value);
+    let free = options.budget.is_none() && !problem.function().signature().costly;
+    let seed = options.seed.unwrap_or(Options::SEED);
+    let by_points = match rough && free && left.take(most_points_given()) {
+        true => counted_condition(problem, [c, given], seed),
+        false => None,
+    };
+    let by_yields = by_yields.and_then(|of| Some((of.value, verdict::share(verdict::about(of.value, Some(of.error))?))));
+    let width = |(_, [low, high]): &(f64, [f64; 2])| high - low;
+    let found = by_points.into_iter().chain(by_yields).min_by(|a, b| width(a).total_cmp(&width(b)));
+    let (value, interval) = found?;
+    Some(ConditionalYield::new(name, value, interval, [measured(c, own), measured(given, other)]))
+}
+
+/// Conditional yield by the joint yield of both characteristics. Returns None if its error is as large as the share `kept` of assemblies
+/// that count, because the difference of the yields says nothing about them then.
+fn by_yields(
+    problem: &Problem,
+    options: &Options,
+    left: &mut SampleBudget,
+    characteristics: &[CharacteristicAnalysis],
+    laws: &[Option<SurfaceLaw>],
+    [c, given]: [usize; 2],
+    kept: f64,
+) -> Option<Verified> {
     let both = joint_of(problem, options, left, characteristics, laws, &[c, given])?;
-    let kept = 1.0 - other;
-    if kept <= 0.0 {
+    let of_other = characteristics[given].error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0);
+    if kept <= 0.0 || libm::hypot(both.error, of_other) >= MOST_ERROR * kept {
         return None;
     }
     let value = (both.value / kept).clamp(0.0, 1.0);
-    let of_other = characteristics[given].error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0);
-    let error = libm::hypot(both.error, value * of_other) / kept;
-    let interval = verdict::about(value, Some(Verified { value, error }.error))?;
-    Some(ConditionalYield::new(name, value, verdict::share(interval), [measured(c, own), measured(given, other)]))
+    Some(Verified { value, error: libm::hypot(both.error, value * of_other) / kept })
 }
 
 /// True if two characteristics depend on different dimensions that vary independently.

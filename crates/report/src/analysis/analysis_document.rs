@@ -396,7 +396,8 @@ impl CharacteristicSections for CharacteristicAnalysis {
     fn kept(&self, section: &mut Section) {
         let shown = |rejects: Rejects| format!("yield {}", rejects.text().unwrap_or_else(|| "unknown".to_owned()));
         let target = judged(self.target(), self.verdict());
-        let conditional = conditional(&self.characteristic, self.distribution.conditional.as_ref());
+        let reason = "too few assemblies keep it, or their share is unknown";
+        let conditional = conditional(&self.characteristic, self.distribution.conditional.as_ref(), reason);
         let plain = Line::from(shown(self.rejects()));
         // The target is that of the assemblies that count.
         section.note(if conditional.is_some() { plain } else { plain.and(target.clone()) });
