@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::assembly::{Adjusted, Adjustment, AssemblyFunction, Points, State, States, SwitchKind};
+use crate::assembly::{Adjusted, Adjustment, AssemblyFunction, Points, State, States};
 use crate::magnitude::Magnitudes;
 use crate::summary::EvaluatorSummary;
 use sensitol_numeric::characteristic::Characteristic;
@@ -453,10 +453,9 @@ impl Problem {
         &self.outputs
     }
 
-    /// Choice from stock that a characteristic follows, in words. Returns None if it follows none, or if that is unknown.
+    /// Choice from stock that a characteristic follows, in words. Returns None if it follows none.
     pub(crate) fn choice(&self, characteristic: usize) -> Option<String> {
-        let switches = self.function.switches(self.outputs[characteristic])?.list;
-        switches.into_iter().find(|switch| switch.kind == SwitchKind::Choice).map(|switch| switch.text)
+        self.function.choice(self.outputs[characteristic])
     }
 
     /// Row per characteristic, true for each dimension that it can depend on. A black box may depend on all.

@@ -158,6 +158,10 @@ impl Adjusted {
         outputs.iter().any(|&output| self.chosen[output])
     }
 
+    fn choice_of(&self, one: &Adjustment) -> String {
+        format!("the choice of `{}`", self.signature.inputs[one.input].name)
+    }
+
     /// Places of the stock that can be chosen within a region, and the greatest distance from the target that a choice leaves.
     fn possible(&self, one: &Adjustment, region: &[[f64; 2]]) -> Option<(Vec<usize>, f64)> {
         /// Share by which a distance is widened for the rounding of a choice.
@@ -265,12 +269,16 @@ impl AssemblyFunction for Adjusted {
         if self.chosen[output] {
             switches.list.extend(self.adjustments.iter().map(|one| Switch {
                 kind: SwitchKind::Choice,
-                text: format!("the choice of `{}`", self.signature.inputs[one.input].name),
+                text: self.choice_of(one),
                 formula: None,
                 span: 0..0,
             }));
         }
         Some(switches)
+    }
+
+    fn choice(&self, output: usize) -> Option<String> {
+        self.adjustments.first().filter(|_| self.chosen[output]).map(|one| self.choice_of(one))
     }
 
     fn margins(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {

@@ -150,6 +150,12 @@ pub trait AssemblyFunction: Send + Sync {
         None
     }
 
+    /// Returns the choice from stock that an output follows, in words. Returns None if it follows none. It is known of a black box too.
+    fn choice(&self, output: usize) -> Option<String> {
+        let _ = output;
+        None
+    }
+
     /// Returns the margins of points from each of an output's [`switches`](Self::switches), in the order of their list. A margin changes
     /// its sign where the output changes its form. It is NaN if the switch has no part in the value. Returns None if there are no switches.
     ///

@@ -230,6 +230,11 @@ impl AssemblyFunction for States {
         state.function.switches(own)
     }
 
+    fn choice(&self, output: usize) -> Option<String> {
+        let (state, own) = self.of(output);
+        state.function.choice(own)
+    }
+
     fn margins(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {
         let (state, own) = self.of(output);
         state.function.margins(own, &state.points(points))

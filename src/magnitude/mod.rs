@@ -29,6 +29,10 @@ macro_rules! forward_unscaled {
             self.function.switches(output)
         }
 
+        fn choice(&self, output: usize) -> Option<String> {
+            self.function.choice(output)
+        }
+
         fn margins(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {
             self.function.margins(output, points)
         }
