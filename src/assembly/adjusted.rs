@@ -29,7 +29,7 @@ pub enum StockResponse {
     Any,
     /// Monotone: the values are bisected.
     Monotone,
-    /// Linear: the first and the last value are tried.
+    /// Linear: the first and the last value are tried, and the chosen one. A point whose answer there is off their line has no value.
     Linear,
 }
 
@@ -65,7 +65,8 @@ pub struct Adjustment {
 }
 
 impl Adjustment {
-    /// Greatest number of evaluations of the measured output for one choice. Cost: 2 of a linear output, `2 + log2` of a monotone one.
+    /// Greatest number of evaluations of the measured output for one choice. Cost: 3 of a linear output, the third of which tests that it is
+    /// linear, and `2 + log2` of a monotone one.
     ///
     /// ```
     /// use sensitol::assembly::{Adjustment, StockResponse};
@@ -73,12 +74,12 @@ impl Adjustment {
     /// let shim = Adjustment { input: 0, nominal: 5.0, stock, to: 0, target: 0.1, response: StockResponse::Any };
     /// assert_eq!(shim.evaluations(), 33);
     /// assert_eq!(Adjustment { response: StockResponse::Monotone, ..shim.clone() }.evaluations(), 7);
-    /// assert_eq!(Adjustment { response: StockResponse::Linear, ..shim }.evaluations(), 2);
+    /// assert_eq!(Adjustment { response: StockResponse::Linear, ..shim }.evaluations(), 3);
     /// ```
     pub fn evaluations(&self) -> usize {
         let count = self.stock.len();
         match self.response {
-            StockResponse::Linear => count.min(2),
+            StockResponse::Linear => count.min(3),
             StockResponse::Monotone if count > 2 => 2 + (count - 1).next_power_of_two().ilog2() as usize,
             StockResponse::Any | StockResponse::Monotone => count,
         }
@@ -90,6 +91,8 @@ pub(crate) struct Adjusted {
     signature: Signature,
     function: Arc<dyn AssemblyFunction>,
     adjustments: Vec<Adjustment>,
+    /// True for each adjustment whose output is proven to be linear in the input.
+    proven: Vec<bool>,
     /// True for each output that depends on a choice.
     chosen: Vec<bool>,
 }
@@ -106,11 +109,14 @@ struct Chosen {
 impl Adjusted {
     pub(crate) fn new(function: Arc<dyn AssemblyFunction>, mut adjustments: Vec<Adjustment>) -> Self {
         let inner = function.signature();
+        let mut proven = Vec::with_capacity(adjustments.len());
         for one in &mut adjustments {
             let only: Vec<bool> = (0..inner.inputs.len()).map(|input| input == one.input).collect();
-            if function.degree(one.to, &only).is_some_and(|degree| degree <= 1) {
+            let linear = function.degree(one.to, &only).is_some_and(|degree| degree <= 1);
+            if linear {
                 one.response = StockResponse::Linear;
             }
+            proven.push(linear);
         }
         let mut signature = inner.clone();
         let depends = |output: usize, input: usize| {
@@ -130,7 +136,7 @@ impl Adjusted {
                 });
             }
         }
-        Self { signature, function, adjustments, chosen }
+        Self { signature, function, adjustments, proven, chosen }
     }
 
     /// Chooses a value of every adjusted input at each point. Returns None if the run was stopped before.
@@ -140,8 +146,8 @@ impl Adjusted {
             at.column_mut(one.input).fill(one.nominal);
         }
         let mut found = Chosen { points: at, choices: Vec::new(), spent: 0, reused: 0 };
-        for one in &self.adjustments {
-            let choices = search::choices(&*self.function, one, &mut found, run)?;
+        for (one, &proven) in self.adjustments.iter().zip(&self.proven) {
+            let choices = search::choices(&*self.function, one, proven, &mut found, run)?;
             for (value, choice) in found.points.column_mut(one.input).iter_mut().zip(&choices) {
                 *value = choice.place().map_or(one.nominal, |place| one.stock[place]);
             }
@@ -315,8 +321,11 @@ impl AssemblyFunction for Adjusted {
         if !self.any_chosen(outputs) {
             return own;
         }
-        let choice = |one: &Adjustment| one.evaluations() * self.function.evaluations_per_point(&[one.to]);
-        own + self.adjustments.iter().map(choice).sum::<usize>()
+        let choice = |(one, &proven): (&Adjustment, &bool)| {
+            let values = if proven { one.stock.len().min(2) } else { one.evaluations() };
+            values * self.function.evaluations_per_point(&[one.to])
+        };
+        own + self.adjustments.iter().zip(&self.proven).map(choice).sum::<usize>()
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {

@@ -314,3 +314,25 @@ fn a_choice_is_known_of_an_extreme_and_of_a_closure() {
     let found = analyze(&problem.adjusted(vec![one]), &study.options).unwrap();
     assert!(found.characteristics[0].linear.rss.is_none(), "{:?}", found.characteristics[0].linear);
 }
+
+/// `a k^3` is 1 at `k = 1`, where the line through 0.5 and 1.5 is 1.75: the line chooses another value, which is no choice.
+#[test]
+fn a_response_off_the_line_is_no_choice() {
+    let dimensions = || [Dimension::normal("a", 1.0, 0.05).unwrap(), Dimension::fixed("k", 1.0).unwrap()];
+    let stock: Vec<f64> = (0..51).map(|index| 0.5 + 0.02 * f64::from(index)).collect();
+    let asked = |power: i32, at: f64| {
+        let of = move |x: &[f64]| x[0] * x[1].powi(power);
+        let problem = Problem::new(dimensions(), Closure::scalar("y", of)).unwrap();
+        let response = StockResponse::Linear;
+        let one = Adjustment { input: 1, nominal: 1.0, stock: stock.clone(), to: 0, target: 1.0, response };
+        let mut out = Responses::open(1, 1);
+        let problem = problem.adjusted(vec![one]);
+        problem.function().evaluate(&Request::values(&Points::from_rows(&[[at, 1.0]]), &[0]), &Run::to_the_end(), &mut out);
+        (out.value(0, 0), out.error(0, 0).map(ToString::to_string))
+    };
+    let (value, error) = asked(3, 1.0);
+    assert!(value.is_none() && error.as_ref().is_some_and(|text| text.contains("`y` is not linear")), "{value:?} {error:?}");
+    // 1.1 k is nearest 1 at 0.9 of the stock, by 0.01.
+    let (value, error) = asked(1, 1.1);
+    assert!(value.is_some_and(|value| (value - 0.99).abs() < 1e-12) && error.is_none(), "{value:?} {error:?}");
+}

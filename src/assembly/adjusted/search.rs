@@ -91,10 +91,11 @@ impl Trials<'_, '_> {
     }
 }
 
-/// Choice at every point. Returns None if the run was stopped.
+/// Choice at every point, without a test of the line if the output is `proven` to be linear. Returns None if the run was stopped.
 pub(super) fn choices(
     function: &dyn AssemblyFunction,
     one: &Adjustment,
+    proven: bool,
     found: &mut Chosen,
     run: &Run<'_>,
 ) -> Option<Vec<Choice>> {
@@ -103,7 +104,10 @@ pub(super) fn choices(
         _ if one.stock.len() < 3 => every_value(&mut trials),
         StockResponse::Any => every_value(&mut trials),
         StockResponse::Monotone => bisected(&mut trials),
-        StockResponse::Linear => on_a_line(&mut trials),
+        StockResponse::Linear => {
+            let (choices, lines) = on_a_line(&mut trials)?;
+            if proven { Some(choices) } else { tested(&mut trials, choices, &lines) }
+        }
     }
 }
 
@@ -128,27 +132,81 @@ fn every_value(trials: &mut Trials<'_, '_>) -> Option<Vec<Choice>> {
     Some(best.into_iter().zip(errors).map(of).collect())
 }
 
+/// Line through the values of the measured output at both ends of the stock.
+#[derive(Debug, Clone, Copy)]
+struct StockLine {
+    ends: [f64; 2],
+    slope: f64,
+}
+
+impl StockLine {
+    /// Value on the line at a place of the stock.
+    fn at(&self, one: &Adjustment, place: usize) -> f64 {
+        self.ends[0] + self.slope * (one.stock[place] - one.stock[0])
+    }
+
+    /// Greatest distance of an answer from the line that leaves the choice right: half of what the nearest other value changes.
+    fn allowed(&self, one: &Adjustment, place: usize) -> f64 {
+        /// Rounding of an answer, as a part of it. Programs print some ten digits.
+        const ROUNDED: f64 = 1e-9;
+        let around = [place.saturating_sub(1), (place + 1).min(one.stock.len() - 1)];
+        let steps = around.iter().filter(|&&other| other != place).map(|&other| (one.stock[other] - one.stock[place]).abs());
+        let step = steps.fold(f64::INFINITY, f64::min);
+        0.5 * (self.slope * step).abs() + ROUNDED * self.ends[0].abs().max(self.ends[1].abs())
+    }
+}
+
 /// Tries both ends of the stock, and takes the value next to the one that meets the target on the line through them.
-fn on_a_line(trials: &mut Trials<'_, '_>) -> Option<Vec<Choice>> {
+fn on_a_line(trials: &mut Trials<'_, '_>) -> Option<(Vec<Choice>, Vec<StockLine>)> {
     let one = trials.one;
     let last = one.stock.len() - 1;
     let [first, end] = [trials.at(|_| 0)?, trials.at(|_| last)?];
-    let of = |row: usize| {
-        let (Some(a), Some(b)) = (first.value(row, 0), end.value(row, 0)) else {
+    let value = |of: &Responses, row: usize| of.value(row, 0).unwrap_or(f64::NAN);
+    let line = |row: usize| {
+        let ends = [value(&first, row), value(&end, row)];
+        StockLine { ends, slope: (ends[1] - ends[0]) / (one.stock[last] - one.stock[0]) }
+    };
+    let lines: Vec<StockLine> = (0..first.rows()).map(line).collect();
+    let of = |(row, line): (usize, &StockLine)| {
+        if line.slope.is_nan() {
             let error = first.error(row, 0).or(end.error(row, 0)).cloned();
             return Choice::Failed(error.unwrap_or(EvaluationError::NotFinite { value: f64::NAN }));
-        };
-        let slope = (b - a) / (one.stock[last] - one.stock[0]);
-        let met = one.stock[0] + (one.target - a) / slope;
+        }
+        let met = one.stock[0] + (one.target - line.ends[0]) / line.slope;
         let above = if met.is_finite() { one.stock.partition_point(|&value| value < met) } else { 0 };
         let mut best = Best::NONE;
         // The values on both sides of the one that meets the target, and one more on each side for the margin.
         for place in above.saturating_sub(2)..=(above + 1).min(last) {
-            best.consider(place, (a + slope * (one.stock[place] - one.stock[0]) - one.target).abs());
+            best.consider(place, (line.at(one, place) - one.target).abs());
         }
         best.choice()
     };
-    Some((0..first.rows()).map(of).collect())
+    let choices = lines.iter().enumerate().map(of).collect();
+    Some((choices, lines))
+}
+
+/// Compares the answers at the chosen values with the lines. A choice by a line that the answer is off is none.
+fn tested(trials: &mut Trials<'_, '_>, mut choices: Vec<Choice>, lines: &[StockLine]) -> Option<Vec<Choice>> {
+    let one = trials.one;
+    let answers = trials.at(|row| choices[row].place().unwrap_or(0))?;
+    let output = &trials.function.signature().outputs[one.to].name;
+    for (row, (choice, line)) in choices.iter_mut().zip(lines).enumerate() {
+        let Some(place) = choice.place() else { continue };
+        let Some(value) = answers.value(row, 0) else {
+            let error = answers.error(row, 0).cloned();
+            *choice = Choice::Failed(error.unwrap_or(EvaluationError::NotFinite { value: f64::NAN }));
+            continue;
+        };
+        let off = (value - line.at(one, place)).abs();
+        if off > line.allowed(one, place) {
+            let chosen = one.stock[place];
+            let message = format!(
+                "`{output}` is not linear over the stock: at {chosen} it is {off:.2e} off the line through both ends. Leave `response` out"
+            );
+            *choice = Choice::Failed(EvaluationError::Refused { message });
+        }
+    }
+    Some(choices)
 }
 
 /// Bisects the stock between the values on both sides of the target.

@@ -75,6 +75,11 @@ fn depends(function: &dyn AssemblyFunction, output: usize, input: usize) -> bool
     function.signature().outputs[output].depends_on.as_ref().is_none_or(|all| all.contains(&input))
 }
 
+/// True if an output is a formula, or an extreme of one, and no program answers for it.
+fn is_formula(function: &dyn AssemblyFunction, output: usize) -> bool {
+    !function.signature().costly || function.switches(output).is_some_and(|switches| switches.complete)
+}
+
 /// Adds extremes over motions to the outputs of the composite.
 fn with_extremes(
     file: &StudyFile,
@@ -191,8 +196,13 @@ fn adjustment(problem: &Problem, entry: &AdjustEntry, key: &str) -> Result<Adjus
     let response = match &entry.response {
         None => StockResponse::Any,
         Some(word) => {
-            let forms = StockResponse::ALL.map(StockResponse::name);
-            StockResponse::ALL[place(&forms, word, "form of a response", &format!("{key}.response"))?]
+            let (forms, key) = (StockResponse::ALL.map(StockResponse::name), format!("{key}.response"));
+            let form = StockResponse::ALL[place(&forms, word, "form of a response", &key)?];
+            if form != StockResponse::Any && is_formula(problem.function(), to) {
+                let characteristic = characteristic.name().to_owned();
+                return Err(fault(word.span(), key, CompensatorFault::ResponseOfFormula { characteristic }));
+            }
+            form
         }
     };
     let stock = stock(entry, key)?;

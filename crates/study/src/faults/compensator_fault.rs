@@ -48,6 +48,12 @@ pub enum CompensatorFault {
         /// The characteristic.
         characteristic: String,
     },
+    /// A form of the response of a formula, which follows from the formula.
+    #[error("`{characteristic}` is a formula, whose response is known")]
+    ResponseOfFormula {
+        /// The characteristic.
+        characteristic: String,
+    },
     /// A motion along a dimension that varies or is adjusted.
     #[error("`{dimension}` {why}, and a motion needs a dimension of its own")]
     MotionVaries {
@@ -115,6 +121,7 @@ impl CompensatorFault {
             Self::AdjustedTwice { .. } => "join their values, or adjust another dimension".into(),
             Self::TargetOutside { .. } => "write a target between the limits".into(),
             Self::NoEffect { .. } => "name a dimension that its formula uses".into(),
+            Self::ResponseOfFormula { .. } => "leave `response` out: it is for programs".into(),
             Self::MotionVaries { .. } => "add a dimension without tolerance for the motion to the formula".into(),
             Self::EmptyMotion { .. } => "write the lesser value as `from` and the greater one as `to`".into(),
             Self::ExtremeOfExtreme { .. } => "name the characteristic with the formula".into(),

@@ -41,6 +41,8 @@ fn a_stock_is_usable() {
         (stock("step = 0.1\nrange = [1.5, 0.5]"), "[1.5", &["write [0.5, 1.5]"]),
         (stock("step = 1e-6\nrange = [0.5, 1.5]"), "1e-6", &["1000001 values", "coarser"]),
         (stock("values = [1.0]\ntarget = 0.3"), "0.3", &["target 0.3 lies outside the limits of `gap`"]),
+        (stock("values = [1.0]\nresponse = \"linear\""), "\"linear\"", &["`gap` is a formula", "leave `response` out"]),
+        (stock("values = [1.0]\nresponse = \"monotone\""), "\"monotone\"", &["`gap` is a formula"]),
         (stock("values = [1.0]\nresponse = \"straight\""), "\"straight\"", &["form of a response", "linear"]),
     ] {
         refused(&text, at, words);
