@@ -396,10 +396,11 @@ pub(crate) fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) ->
 }
 
 fn of_all(problem: &Problem, outcome: &Outcome) -> Vec<(CharacteristicAnalysis, Option<Shares>)> {
+    let dependence = problem.dependence();
     let of = |c: usize| {
         let (mut one, shares) = CharacteristicAnalysis::of(problem, outcome, c);
         if problem.choice(c).is_some() {
-            one.leave_out_linear();
+            one.leave_out_linear(&dependence[c]);
         }
         (one, shares)
     };

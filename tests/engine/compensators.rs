@@ -307,6 +307,9 @@ fn a_choice_is_known_of_an_extreme_and_of_a_closure() {
     let found = analyze(&study.problem, &study.options).unwrap();
     let shown = |c: usize| found.characteristics[c].linear.rss.is_some();
     assert_eq!([shown(0), shown(1), shown(2)], [false, false, true]);
+    // Difference quotients over the jumps of a choice are no slopes.
+    let slopes = |c: usize| found.characteristics[c].sensitivities.iter().any(|one| one.first.or(one.second).is_some());
+    assert_eq!([slopes(0), slopes(1), slopes(2)], [false, false, true]);
     let dimensions = [Dimension::normal("room", 5.5, 0.1).unwrap(), Dimension::fixed("shim", 5.0).unwrap()];
     let problem = Problem::new(dimensions, Closure::scalar("gap", |x: &[f64]| x[0] - 0.75 * x[1])).unwrap();
     let stock = vec![4.8, 5.0, 5.2];

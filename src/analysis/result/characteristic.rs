@@ -166,8 +166,13 @@ impl CharacteristicAnalysis {
         Some(verdict::share(verdict::losing(around, lost)))
     }
 
-    /// Leaves out the figures of a linear model, which has none where values are chosen from stock.
-    pub(crate) fn leave_out_linear(&mut self) {
+    /// Leaves out the slopes and the figures of a linear model, which do not exist where values are chosen from stock: difference quotients
+    /// over the jumps of a choice have any size and sign. A dimension that it does not depend on keeps its slope of 0.
+    pub(crate) fn leave_out_linear(&mut self, depends: &[bool]) {
+        for (one, _) in self.sensitivities.iter_mut().zip(depends).filter(|(_, depends)| **depends) {
+            (one.first, one.second, one.rounding, one.exact) = (None, None, None, false);
+        }
+        self.linear.six_sigma = None;
         self.range.worst_case = None;
         (self.linear.rss, self.linear.inflated_rss, self.linear.mean_shift_rss) = (None, None, None);
     }
