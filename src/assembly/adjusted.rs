@@ -192,6 +192,10 @@ impl Adjusted {
     fn chosen_bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
         let mut at = region.to_vec();
         self.adjustments.iter().for_each(|one| at[one.input] = [one.nominal; 2]);
+        let outputs = &self.function.signature().outputs;
+        let depends = |output: usize, input: usize| {
+            outputs[output].depends_on.as_ref().is_none_or(|all| all.contains(&input))
+        };
         let (mut single, mut left) = (true, None);
         for one in &self.adjustments {
             let (places, most) = self.possible(one, &at)?;
@@ -199,7 +203,12 @@ impl Adjusted {
             let (&first, &last) = ends?;
             single &= first == last;
             at[one.input] = [one.stock[first], one.stock[last]];
-            left = (one.to == output).then_some(Interval::between(one.target - most, one.target + most));
+            if one.to == output {
+                left = Some(Interval::between(one.target - most, one.target + most));
+            } else if depends(output, one.input) {
+                // A later choice moves the output away again.
+                left = None;
+            }
         }
         let fixed = self.adjustments.iter().all(|one| region[one.input] == [one.nominal; 2]);
         for one in &self.adjustments {

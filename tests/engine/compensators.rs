@@ -339,3 +339,27 @@ fn a_response_off_the_line_is_no_choice() {
     let (value, error) = asked(1, 1.1);
     assert!(value.is_some_and(|value| (value - 0.99).abs() < 1e-12) && error.is_none(), "{value:?} {error:?}");
 }
+
+/// A second choice that does not move the output of the first one leaves its bounds.
+#[test]
+fn a_second_choice_leaves_the_bounds_of_the_first() {
+    let choice = |dimension: &str, to: &str| {
+        format!("[[adjust]]\ndimension = \"{dimension}\"\nstep = 0.1\nrange = [0.0, 2.0]\nto = \"{to}\"\ntarget = 0.0\n")
+    };
+    let text = format!(
+        "[dimensions]\na = {{ nominal = 1.0, tolerance = 0.3 }}\nb = {{ nominal = 2.0, tolerance = 0.3 }}\n\
+         s1 = {{ nominal = 1.0 }}\ns2 = {{ nominal = 1.0 }}\n[characteristics]\n\
+         first = {{ formula = \"a - s1\" }}\nsecond = {{ formula = \"b - s1 - s2\" }}\n{}{}",
+        choice("s1", "first"),
+        choice("s2", "second")
+    );
+    let problem = of_text(&text).problem;
+    let region = [[0.7, 1.3], [1.7, 2.3], [1.0, 1.0], [1.0, 1.0]];
+    let found = problem.function().bounds(problem.outputs()[0], &region).unwrap().value;
+    // The value 1 leaves 0.3 of this box on either side, and no choice leaves more.
+    let alone = of_text(&text[..text.rfind("[[adjust]]").unwrap()]).problem;
+    let one = alone.function().bounds(alone.outputs()[0], &region).unwrap().value;
+    assert_eq!([found.lower(), found.upper()], [one.lower(), one.upper()]);
+    // Without that the bounds are those of all values that can be chosen, 0.4 to 1.6: 0.9 on either side.
+    assert!(found.lower() > -0.4 && found.upper() < 0.4, "{found:?}");
+}
