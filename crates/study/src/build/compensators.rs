@@ -221,6 +221,10 @@ fn stock(entry: &AdjustEntry, key: &str) -> Result<Vec<f64>, Fault> {
             return Err(fault(values.span(), key, StudyFault::Conflict { a: "values", b: other, why }));
         }
         let mut stock = values.get_ref().clone();
+        if stock.len() > MOST_VALUES {
+            let long = CompensatorFault::LongStock { dimension, count: stock.len(), most: MOST_VALUES };
+            return Err(fault(values.span(), key, long));
+        }
         if let Some(value) = stock.iter().find(|value| !value.is_finite()) {
             return Err(fault(values.span(), key, StudyFault::NotFinite { text: value.to_string() }));
         }

@@ -26,6 +26,16 @@ pub enum CompensatorFault {
         /// Most values.
         most: usize,
     },
+    /// A list of too many values.
+    #[error("the stock of `{dimension}` has {count} values, and {most} is the most")]
+    LongStock {
+        /// The adjusted dimension.
+        dimension: String,
+        /// Number of values.
+        count: usize,
+        /// Most values.
+        most: usize,
+    },
     /// A dimension that is adjusted twice.
     #[error("`{dimension}` is adjusted by another [[adjust]] already")]
     AdjustedTwice {
@@ -118,6 +128,7 @@ impl CompensatorFault {
             Self::EmptyStock { .. } => "write values = [0.9, 1.0, 1.1], or step = 0.1 and range = [0.5, 1.5]".into(),
             Self::RepeatedValue { .. } => "leave one of the two out".into(),
             Self::TooManyValues { .. } => "write a coarser step or a narrower range".into(),
+            Self::LongStock { .. } => "leave values out".into(),
             Self::AdjustedTwice { .. } => "join their values, or adjust another dimension".into(),
             Self::TargetOutside { .. } => "write a target between the limits".into(),
             Self::NoEffect { .. } => "name a dimension that its formula uses".into(),

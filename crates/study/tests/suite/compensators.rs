@@ -47,6 +47,8 @@ fn a_stock_is_usable() {
     ] {
         refused(&text, at, words);
     }
+    let many: Vec<String> = (0..1001).map(|index| format!("{index}")).collect();
+    refused(&stock(&format!("values = [{}]", many.join(", "))), "[0, 1", &["1001 values", "1000 is the most"]);
     let twice = stock("values = [1.0, 1.1]\n[[adjust]]\ndimension = \"shim\"\nto = \"gap\"\nvalues = [1.2]");
     refused(&twice, "\"shim\"\nto = \"gap\"\nvalues = [1.2]", &["adjusted by another [[adjust]] already"]);
     let table = format!("{DIMENSIONS}[adjust]\ndimension = \"shim\"\nto = \"gap\"\nvalues = [1.0]\n");
