@@ -193,9 +193,8 @@ impl Adjusted {
         let mut at = region.to_vec();
         self.adjustments.iter().for_each(|one| at[one.input] = [one.nominal; 2]);
         let outputs = &self.function.signature().outputs;
-        let depends = |output: usize, input: usize| {
-            outputs[output].depends_on.as_ref().is_none_or(|all| all.contains(&input))
-        };
+        let depends =
+            |output: usize, input: usize| outputs[output].depends_on.as_ref().is_none_or(|all| all.contains(&input));
         let (mut single, mut left) = (true, None);
         for one in &self.adjustments {
             let (places, most) = self.possible(one, &at)?;

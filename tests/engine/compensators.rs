@@ -330,11 +330,18 @@ fn a_response_off_the_line_is_no_choice() {
         let one = Adjustment { input: 1, nominal: 1.0, stock: stock.clone(), to: 0, target: 1.0, response };
         let mut out = Responses::open(1, 1);
         let problem = problem.adjusted(vec![one]);
-        problem.function().evaluate(&Request::values(&Points::from_rows(&[[at, 1.0]]), &[0]), &Run::to_the_end(), &mut out);
+        problem.function().evaluate(
+            &Request::values(&Points::from_rows(&[[at, 1.0]]), &[0]),
+            &Run::to_the_end(),
+            &mut out,
+        );
         (out.value(0, 0), out.error(0, 0).map(ToString::to_string))
     };
     let (value, error) = asked(3, 1.0);
-    assert!(value.is_none() && error.as_ref().is_some_and(|text| text.contains("`y` is not linear")), "{value:?} {error:?}");
+    assert!(
+        value.is_none() && error.as_ref().is_some_and(|text| text.contains("`y` is not linear")),
+        "{value:?} {error:?}"
+    );
     // 1.1 k is nearest 1 at 0.9 of the stock, by 0.01.
     let (value, error) = asked(1, 1.1);
     assert!(value.is_some_and(|value| (value - 0.99).abs() < 1e-12) && error.is_none(), "{value:?} {error:?}");
@@ -344,7 +351,9 @@ fn a_response_off_the_line_is_no_choice() {
 #[test]
 fn a_second_choice_leaves_the_bounds_of_the_first() {
     let choice = |dimension: &str, to: &str| {
-        format!("[[adjust]]\ndimension = \"{dimension}\"\nstep = 0.1\nrange = [0.0, 2.0]\nto = \"{to}\"\ntarget = 0.0\n")
+        format!(
+            "[[adjust]]\ndimension = \"{dimension}\"\nstep = 0.1\nrange = [0.0, 2.0]\nto = \"{to}\"\ntarget = 0.0\n"
+        )
     };
     let text = format!(
         "[dimensions]\na = {{ nominal = 1.0, tolerance = 0.3 }}\nb = {{ nominal = 2.0, tolerance = 0.3 }}\n\

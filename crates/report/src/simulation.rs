@@ -161,7 +161,8 @@ impl SimulationSection for SimulatedCharacteristic {
         let rejects = Rejects::new(self.below, self.above, self.yield_error()).within(self.reject_intervals);
         let text = rejects.yield_text().unwrap_or_else(|| yielded(yield_.value));
         let of_all = Line::from(format!("yield {text}, 95 % interval {low} to {high}"));
-        let conditional = conditional(&self.characteristic, self.conditional.as_ref(), "no assembly of the sample keeps it");
+        let conditional =
+            conditional(&self.characteristic, self.conditional.as_ref(), "no assembly of the sample keeps it");
         // The target is that of the assemblies that count.
         section.note(if conditional.is_some() { of_all } else { of_all.and(target.clone()) });
         conditional.into_iter().for_each(|line| section.note(Line::from(line).and(target.clone())));

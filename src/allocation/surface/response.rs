@@ -358,7 +358,9 @@ impl Responses {
         let sign = if above { 1.0 } else { -1.0 };
         let mut coefficients = vec![0.0; priced.len()];
         let mut constant = 0.0;
-        let mut zones: Vec<(&str, Option<(usize, f64)>, f64)> = Vec::new();
+        /// Group of priced dimensions, with the share of a member in its tolerance.
+        type Holder = Option<(usize, f64)>;
+        let mut zones: Vec<(&str, Holder, f64)> = Vec::new();
         for (d, &slope) in slopes.iter().enumerate() {
             let reach = self.reach[d];
             let group = holder(priced, d);

@@ -62,7 +62,8 @@ fn of_pair(
         true => counted_condition(problem, [c, given], seed),
         false => None,
     };
-    let by_yields = by_yields.and_then(|of| Some((of.value, verdict::share(verdict::about(of.value, Some(of.error))?))));
+    let by_yields =
+        by_yields.and_then(|of| Some((of.value, verdict::share(verdict::about(of.value, Some(of.error))?))));
     let width = |(_, [low, high]): &(f64, [f64; 2])| high - low;
     let found = by_points.into_iter().chain(by_yields).min_by(|a, b| width(a).total_cmp(&width(b)));
     let (value, interval) = found?;

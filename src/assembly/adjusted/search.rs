@@ -150,7 +150,8 @@ impl StockLine {
         /// Rounding of an answer, as a part of it. Programs print some ten digits.
         const ROUNDED: f64 = 1e-9;
         let around = [place.saturating_sub(1), (place + 1).min(one.stock.len() - 1)];
-        let steps = around.iter().filter(|&&other| other != place).map(|&other| (one.stock[other] - one.stock[place]).abs());
+        let steps =
+            around.iter().filter(|&&other| other != place).map(|&other| (one.stock[other] - one.stock[place]).abs());
         let step = steps.fold(f64::INFINITY, f64::min);
         0.5 * (self.slope * step).abs() + ROUNDED * self.ends[0].abs().max(self.ends[1].abs())
     }

@@ -4,6 +4,7 @@
 //! Values are in the order in which the parts were measured.
 
 mod column;
+mod column_tests;
 mod components;
 mod departure;
 mod pair;
@@ -15,7 +16,8 @@ mod shape;
 mod significance;
 mod trend;
 
-pub use column::{ColumnTests, LotSample};
+pub use column::LotSample;
+pub use column_tests::ColumnTests;
 pub use components::{GroupComparison, compare_groups};
 pub use departure::{Departure, likeliest_departure};
 pub use pair::{CorrelationEstimate, correlation_estimate};
