@@ -172,7 +172,7 @@ impl<'s> RefinementSearch<'s> {
                 let (after, cost_after, confirmation) = (None, None, None);
                 let (prices, setups, front, proof) = (Vec::new(), Vec::new(), Vec::new(), Proof::default());
                 let loss = [found.loss[0], None];
-                let joint = [found.joint[0].clone(), None];
+                let joint = [found.joint[0], None];
                 Allocation {
                     status,
                     problem,
