@@ -63,7 +63,7 @@ mod folder;
 pub mod import;
 mod labels;
 #[cfg(feature = "import")]
-mod lot_table;
+mod lot;
 mod posterior_text;
 mod rewrite;
 mod scene;
@@ -92,7 +92,7 @@ pub use error::{StudyError, StudyFault};
 pub use faults::zone_fault::ZoneFault;
 pub use files::{FileRole, NamedFile};
 #[cfg(feature = "import")]
-pub use lot_table::{LotTableFault, ReadLot, read_lot};
+pub use lot::{LotTableFault, ReadLot, read_lot};
 pub use posterior_text::{UpdatedSpread, UpdatedStudy};
 pub use rewrite::{RewriteError, Rewritten};
 pub use scene::{

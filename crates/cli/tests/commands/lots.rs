@@ -173,6 +173,9 @@ fn wrong_lots_are_refused() {
     says("depth\n42.01\n", &["`depth` has 1 measured value in lot.csv", "leave the column out"]);
     says("depth\n42.01\n1e300\n-1e300\n42.02\n42.03\n", &["`depth` in lot.csv go from -1", "too far apart"]);
     says("time;depth\n6 am;42.01\n", &["`6 am` is not a time", "06:30"]);
+    says("time;depth\n25:71;42.01\n", &["`25:71` is not a time", "28.11.2026 06:30"]);
+    says("date;depth\n2026-02-31;42.01\n", &["`2026-02-31` is not a time"]);
+    says("time;depth\n06:30;42.01\n28.11.2026 06:30;42.02\n", &["line 3", "all without one"]);
     says("depth\n", &["a first row with the names of the columns"]);
 }
 

@@ -39,7 +39,7 @@ impl Figures {
         scale: f64,
     ) -> Result<Option<usize>, ImportFault> {
         Ok(match content {
-            Content::Empty | Content::Date | Content::Error(_) => None,
+            Content::Empty | Content::Date(_) | Content::Error(_) => None,
             Content::Text(text) => Some(self.keep(cell, text, scale)),
             Content::Number { value, percent: false, .. } => Some(self.keep_value(cell, *value, scale)),
             Content::Number { value, percent: true, .. } => {

@@ -126,7 +126,7 @@ fn is_figure(cell: &Content) -> bool {
             let text: String = crate::table::clean(text);
             is_number(text.trim_end_matches(['%', ' '])) || !matches!(written(&text), None | Some(Written::Class(_)))
         }
-        Content::Empty | Content::Date | Content::Error(_) => false,
+        Content::Empty | Content::Date(_) | Content::Error(_) => false,
     }
 }
 

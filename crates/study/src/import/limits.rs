@@ -103,7 +103,7 @@ fn is_number(cell: &Content) -> bool {
     match cell {
         Content::Number { percent, .. } => !percent,
         Content::Text(text) => crate::import::tolerance::is_number(&crate::table::clean(text)),
-        Content::Empty | Content::Date | Content::Error(_) => false,
+        Content::Empty | Content::Date(_) | Content::Error(_) => false,
     }
 }
 

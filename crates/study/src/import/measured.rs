@@ -110,7 +110,7 @@ fn column(name: &str, place: usize, rows: &[(u64, Vec<Content>)]) -> Option<Meas
             Content::Number { .. } => values += 1,
             Content::Text(text) if MISSING.contains(&text.to_lowercase().as_str()) => blanks += 1,
             Content::Text(text) if is_number(&crate::table::clean(text)) => values += 1,
-            Content::Text(_) | Content::Date | Content::Error(_) => return None,
+            Content::Text(_) | Content::Date(_) | Content::Error(_) => return None,
         }
     }
     let open = name.rfind(['[', '(']).filter(|_| name.ends_with([']', ')']));

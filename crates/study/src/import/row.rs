@@ -130,7 +130,7 @@ pub(super) fn row(
 fn refuse_errors(header: &Header, line: u64, content: &[Content]) -> Result<(), ImportFault> {
     for place in header.places() {
         let problem = match content.get(place) {
-            Some(Content::Date) => ImportProblem::Date,
+            Some(Content::Date(_)) => ImportProblem::Date,
             Some(Content::Error(text)) => ImportProblem::Error { text: text.clone() },
             _ => continue,
         };

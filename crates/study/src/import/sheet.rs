@@ -18,8 +18,8 @@ pub(crate) enum Content {
         /// True if the cell shows a positive number with a plus sign.
         plus: bool,
     },
-    /// A date or a time.
-    Date,
+    /// A date or a time in days as workbooks count them; None if it is unknown.
+    Date(Option<f64>),
     /// Error value of a spreadsheet formula, such as #REF!.
     Error(String),
 }
@@ -35,7 +35,7 @@ impl Content {
         match self {
             Self::Text(text) => Some(text.clone()),
             Self::Number { value, .. } => Some(value.to_string()),
-            Self::Empty | Self::Date | Self::Error(_) => None,
+            Self::Empty | Self::Date(_) | Self::Error(_) => None,
         }
     }
 }

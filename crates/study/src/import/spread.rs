@@ -135,7 +135,7 @@ fn in_one_cell(
         Content::Number { value, percent: true, .. } => {
             return Ok(Some(Band::Percent(figures.keep_value(&at, in_percent(*value), 1.0))));
         }
-        Content::Empty | Content::Date | Content::Error(_) => return Ok(None),
+        Content::Empty | Content::Date(_) | Content::Error(_) => return Ok(None),
     };
     let no_tolerance = || ImportFault::of(at.clone(), ImportProblem::NoTolerance { text: text.clone() });
     Ok(Some(match written(text).ok_or_else(no_tolerance)? {

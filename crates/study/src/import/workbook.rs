@@ -175,7 +175,8 @@ fn content(cell: &DataRef<'_>, Shown { percent, plus }: Shown) -> Content {
         DataRef::SharedString(found) => text(found),
         DataRef::Bool(true) => Content::Text("TRUE".to_owned()),
         DataRef::Bool(false) => Content::Text("FALSE".to_owned()),
-        DataRef::DateTime(_) | DataRef::DateTimeIso(_) | DataRef::DurationIso(_) => Content::Date,
+        DataRef::DateTime(date) => Content::Date(Some(date.as_f64())),
+        DataRef::DateTimeIso(_) | DataRef::DurationIso(_) => Content::Date(None),
         DataRef::Error(error) => Content::Error(error.to_string()),
     }
 }

@@ -3,6 +3,9 @@
 //! A header may carry a unit, `bore [mm]`. A column of another unit than the study's is converted. Columns for lot, machine, operator and
 //! time are known by their headers, in English or German. All other columns are left out and named.
 
+mod row_time;
+
+use self::row_time::{RowTime, in_order};
 use crate::Study;
 use crate::import::{Content, Sheet};
 use crate::table::NumberStyle;
@@ -94,6 +97,14 @@ pub enum LotTableFault {
         /// Text of the cell.
         text: String,
     },
+    /// Times with a date, times without one and numbers stand in one column.
+    #[error("line {line}, column `{column}`: this time has another form than those above it")]
+    MixedTimes {
+        /// Line of the table.
+        line: u64,
+        /// Header of the column.
+        column: String,
+    },
     /// The unit of a column is not one of the same kind as that of the study.
     #[error("the column `{column}` is in {found}, and the study has {expected}")]
     LotUnit {
@@ -120,7 +131,10 @@ impl LotTableFault {
                 "where commas are decimal ones, separate columns by semicolons or tabs".to_owned()
             }
             Self::NotANumber { .. } => "leave a cell empty, or write NA, where nothing was measured".to_owned(),
-            Self::NotATime { .. } => "times are numbers, 06:30, 06:30:15, 2026-11-28 or 2026-11-28 06:30".to_owned(),
+            Self::NotATime { .. } => {
+                "times are numbers, 06:30, 06:30:15, 2026-11-28, 2026-11-28 06:30 or 28.11.2026 06:30".to_owned()
+            }
+            Self::MixedTimes { .. } => "write all times with a date, or all without one".to_owned(),
             Self::LotUnit { .. } => "write the column in a unit of the same kind".to_owned(),
         })
     }
@@ -168,7 +182,9 @@ pub fn read_lot(sheet: &Sheet, study: &Study) -> Result<ReadLot, LotTableFault> 
         } else if let Some((_, kind)) = group {
             table.groupings.push(LotGrouping { name: header.clone(), kind: *kind, labels: column.labels() });
         } else if TIMES.contains(&lower.as_str()) && table.times.is_none() {
-            table.times = Some(column.times()?);
+            let (times, note) = column.times()?;
+            table.times = Some(times);
+            notes.extend(note);
         } else {
             left_out.push(header.clone());
         }
@@ -266,62 +282,45 @@ impl Cells<'_> {
                     next += 1;
                     style.number(next - 1, text).map(Some).map_err(|_| fault(text.clone()))
                 }
-                Content::Date => Err(fault("a date".to_owned())),
+                Content::Date(_) => Err(fault("a date".to_owned())),
                 Content::Error(text) => Err(fault(text.clone())),
             }
         };
         self.cells().map(number).collect()
     }
 
-    fn times(&self) -> Result<Vec<Option<f64>>, LotTableFault> {
-        let read = |(line, cell): (u64, &Content)| {
+    /// Times of the rows in order, and a note on clock times that fall.
+    fn times(&self) -> Result<(Vec<Option<f64>>, Option<String>), LotTableFault> {
+        let (mut times, mut first): (Vec<Option<RowTime>>, Option<RowTime>) = (Vec::new(), None);
+        for (line, cell) in self.cells() {
             let fault = |text: String| LotTableFault::NotATime { line, column: self.header.to_owned(), text };
-            match cell {
-                Content::Empty => Ok(None),
-                Content::Number { value, .. } => Ok(Some(*value)),
-                Content::Text(text) => time(text.trim()).map(Some).ok_or_else(|| fault(text.clone())),
-                Content::Date => Err(fault("a date of a workbook".to_owned())),
-                Content::Error(text) => Err(fault(text.clone())),
+            let time = match cell {
+                Content::Empty => None,
+                Content::Text(text) if MISSING.contains(&text.to_lowercase().as_str()) => None,
+                Content::Number { value, .. } => Some(RowTime::Number(*value)),
+                Content::Text(text) => Some(RowTime::of_text(text.trim()).ok_or_else(|| fault(text.clone()))?),
+                Content::Date(days) => {
+                    let time = days.and_then(RowTime::of_workbook);
+                    Some(time.ok_or_else(|| fault("a date of a workbook".to_owned()))?)
+                }
+                Content::Error(text) => return Err(fault(text.clone())),
+            };
+            if let Some(time) = time
+                && !first.get_or_insert(time).like(time)
+            {
+                return Err(LotTableFault::MixedTimes { line, column: self.header.to_owned() });
             }
+            times.push(time);
+        }
+        let (placed, falls) = in_order(&times);
+        let header = self.header;
+        let note = match falls {
+            0 => None,
+            1 => Some(format!("`{header}` has no date and falls once: the rows from there on are of the next day")),
+            _ => Some(format!(
+                "`{header}` has no date and falls {falls} times: all rows are taken as of one day; write the date too if they are not"
+            )),
         };
-        self.cells().map(read).collect()
+        Ok((placed, note))
     }
-}
-
-/// Time in seconds, or a number as it is.
-fn time(text: &str) -> Option<f64> {
-    if let Ok(number) = text.parse::<f64>() {
-        return Some(number).filter(|number| number.is_finite());
-    }
-    let (date, clock) = match text.split_once([' ', 'T']) {
-        Some((date, clock)) => (Some(date), Some(clock)),
-        None if text.contains(':') => (None, Some(text)),
-        None => (Some(text), None),
-    };
-    let days = match date {
-        None => 0.0,
-        Some(date) => {
-            let parts: Vec<i64> = date.split('-').map(|part| part.parse().ok()).collect::<Option<_>>()?;
-            let [year, month, day] = parts[..] else { return None };
-            if !(1..=12).contains(&month) || !(1..=31).contains(&day) {
-                return None;
-            }
-            // Days of the Gregorian calendar from a year that begins in March.
-            let (y, m) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
-            (365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + (153 * m + 2) / 5 + day) as f64
-        }
-    };
-    let seconds = match clock {
-        None => 0.0,
-        Some(clock) => {
-            let parts: Vec<f64> =
-                clock.trim_end_matches('Z').split(':').map(|part| part.parse().ok()).collect::<Option<_>>()?;
-            match parts[..] {
-                [hours, minutes] => 3600.0 * hours + 60.0 * minutes,
-                [hours, minutes, seconds] => 3600.0 * hours + 60.0 * minutes + seconds,
-                _ => return None,
-            }
-        }
-    };
-    Some(86400.0 * days + seconds)
 }
