@@ -354,6 +354,20 @@ pub enum AllocateError {
     /// Recentring without a characteristic with limits.
     #[error("recentring needs a characteristic with limits")]
     NoLimits,
+    /// Zones of which no offers keep the refinement.
+    #[error(
+        "every cost of `{inner}` is for {least} or more, and of `{outer}`, which it refines, for {most} or less: give `{inner}` a tighter one"
+    )]
+    NeverRefined {
+        /// Name of the zone that refines the other.
+        inner: String,
+        /// Name of the wider zone.
+        outer: String,
+        /// Least tolerance of the first zone.
+        least: f64,
+        /// Greatest tolerance of the second zone.
+        most: f64,
+    },
     /// Goal without a characteristic that it applies to, or with too many.
     #[error(
         "to seek {what} for a cost takes costs and {of} with limits of which neither worst case nor sigma is required; there are {count}"
@@ -493,6 +507,7 @@ impl AllocationTask {
                 return Err(AllocateError::DoesNotScale { dimension, why });
             }
         }
+        self.check_refinements()?;
         self.check_recentre(problem, options)?;
         if let Some(points) = options.front {
             let required =

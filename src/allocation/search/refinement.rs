@@ -9,7 +9,7 @@ use crate::allocation::cost::cost_curve::Curve;
 use crate::allocation::cost::priced_group::{Offer, Priced};
 use crate::allocation::cost::priced_group::{PricedZone, ZonePart};
 use crate::allocation::result::allocation::Allocation;
-use crate::allocation::task::{AllocationTask, Goal};
+use crate::allocation::task::{AllocateError, AllocationTask, Goal};
 
 /// Relative excess over the wider zone that counts as rounding.
 const ROUNDING: f64 = 1e-9;
@@ -30,6 +30,21 @@ struct Broken {
 }
 
 impl AllocationTask {
+    /// Checks that some tolerances of every pair of zones keep their refinement.
+    pub(in crate::allocation) fn check_refinements(&self) -> Result<(), AllocateError> {
+        for (inner, outer) in self.refinements() {
+            let (least, most) = (self.priced[inner].tightest(), self.priced[outer].loosest());
+            if least > most * (1.0 + ROUNDING) {
+                let name = |g: usize| {
+                    let zone = self.priced[g].zone.as_ref().and_then(|zone| zone.parts.first());
+                    zone.map_or_else(String::new, |part| part.name.clone())
+                };
+                return Err(AllocateError::NeverRefined { inner: name(inner), outer: name(outer), least, most });
+            }
+        }
+        Ok(())
+    }
+
     /// True if the tolerances found break a refinement.
     pub(in crate::allocation) fn breaks_refinement(&self, found: &Allocation) -> bool {
         self.broken(found).is_some()
