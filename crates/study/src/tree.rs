@@ -94,11 +94,21 @@ fn finite(text: &str, span: &Range<usize>) -> Result<f64, Fault> {
     }
 }
 
+/// Fault of a value with the key of its table in front of its own.
+fn below(name: &str, fault: Fault) -> Fault {
+    let key = match fault.key.is_empty() {
+        true => name.to_owned(),
+        false => format!("{name}.{}", fault.key),
+    };
+    Fault { key, ..fault }
+}
+
 fn toml_table(table: &DeTable<'_>) -> Result<Value, Fault> {
     let entry = |(key, value): (&toml::Spanned<_>, &toml::Spanned<DeValue<'_>>)| {
         let key: &toml::Spanned<std::borrow::Cow<'_, str>> = key;
         let name = key.get_ref().to_string();
-        Ok((Key { span: key.span(), name }, toml_value(value)?))
+        let value = toml_value(value).map_err(|fault| below(&name, fault))?;
+        Ok((Key { span: key.span(), name }, value))
     };
     Ok(Value::Table(table.iter().map(entry).collect::<Result<_, _>>()?))
 }

@@ -36,6 +36,11 @@ pub enum TypingHabit {
         /// The class.
         class: String,
     },
+    /// Numbers of a list in one text.
+    QuotedNumbers {
+        /// The list of the numbers.
+        list: String,
+    },
     /// A command line in one text.
     CommandLine {
         /// Words of the command line.
@@ -53,6 +58,7 @@ impl fmt::Display for TypingHabit {
             Self::TypesetMinus => f.write_str("minus is the sign - of the keyboard"),
             Self::MissingComma => f.write_str("write a comma between the entries"),
             Self::QuotedNumber { number } => write!(f, "write {number}, without quotes"),
+            Self::QuotedNumbers { list } => write!(f, "write its numbers as a list: {list}"),
             Self::TwoDeviations { list } => write!(f, "write {list}, without quotes"),
             Self::FitClass { class } => write!(f, "write fit = \"{class}\" in place of the tolerance"),
             Self::CommandLine { words } => {
@@ -83,6 +89,11 @@ impl TypingHabit {
     pub(super) fn of_value(expected: &str, found: &str) -> Option<Self> {
         let text = found.strip_prefix("the text \"")?.strip_suffix('"')?;
         if expected.starts_with("a list such as") {
+            let numbers: Vec<&str> =
+                text.split([' ', ',', ';', '[', ']']).filter(|number| !number.is_empty()).collect();
+            if !numbers.is_empty() && numbers.iter().all(|number| number.parse::<f64>().is_ok()) {
+                return Some(Self::QuotedNumbers { list: format!("[{}]", numbers.join(", ")) });
+            }
             let words = text.split_whitespace().map(str::to_owned).collect();
             return Some(Self::CommandLine { words });
         }

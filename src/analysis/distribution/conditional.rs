@@ -5,7 +5,8 @@
 //! ```
 //!
 //! If few assemblies keep the other limits, the difference of the yields is smaller than its error. Both are counted at points of a cheap
-//! model then, and the yield stays None for a costly one. It is the own yield if both characteristics depend on different independent inputs.
+//! model then, and the yield stays None for a costly one. It is the own yield if both characteristics depend on different independent
+//! inputs.
 
 use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::distribution::yield_selection::joint_of;

@@ -21,13 +21,16 @@ pub fn plural(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
-/// Formats a yield in percent, with three significant digits of the reject rate.
+/// Formats a yield in percent, with three significant digits of the reject rate, and one of a yield near 0.
 pub(crate) fn share(rejected: f64) -> String {
     let percent = 100.0 * rejected;
     if percent <= 0.0 {
         return "100 %".to_owned();
     }
-    let decimals = (2.0 - libm::log10(percent).floor()).clamp(2.0, 12.0) as usize;
+    let kept = 100.0 * (1.0 - rejected);
+    // A smaller yield is a rounding error of its reject rate.
+    let of_kept = if kept > 1e-10 { -libm::log10(kept).floor() } else { 0.0 };
+    let decimals = (2.0 - libm::log10(percent).floor()).max(of_kept).clamp(2.0, 12.0) as usize;
     let text = format!("{:.decimals$}", 100.0 - percent);
     match text.trim_end_matches('0') {
         "100." => "100 %".to_owned(),
@@ -337,6 +340,16 @@ mod tests {
         assert_eq!(carried(941.73848, 0.87081, Some(0.2)), "941.74");
         assert_eq!(estimated(0.043_646_769, Some(3e-8)), "0.0436468");
         assert_eq!(carried_ends([-0.123_456, 941.73848], 0.87081, None), ["-0.123", "941.738"]);
+    }
+
+    #[test]
+    fn a_yield_near_0_is_not_0() {
+        // Upper end of the interval of no hit among 100000: 3.84e-5. Its mirror has three digits of the rejects.
+        assert_eq!(
+            [0.0, 3.84e-5, 0.000_139, 0.05, 0.5].map(yielded),
+            ["0 %", "0.004 %", "0.01 %", "5.00 %", "50.00 %"]
+        );
+        assert_eq!(yielded(1.0 - 3.84e-5), "99.99616 %");
     }
 
     #[test]

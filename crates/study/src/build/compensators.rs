@@ -238,6 +238,11 @@ fn stock(entry: &AdjustEntry, key: &str) -> Result<Vec<f64>, Fault> {
         };
     }
     let Some(step) = &entry.step else {
+        if let Some(range) = &entry.range {
+            let instead = "write the distance of two values in stock, such as step = 0.1".to_owned();
+            let missing = StudyFault::MissingKey { key: "step".into(), instead };
+            return Err(fault(range.span(), format!("{key}.step"), missing));
+        }
         return Err(fault(at, format!("{key}.values"), CompensatorFault::EmptyStock { dimension }));
     };
     let Some(range) = &entry.range else {
@@ -272,8 +277,8 @@ fn given(file: &StudyFile) -> Result<(), Fault> {
         let condition = place(&names, given, "characteristic", &key)?;
         let found = if condition == c {
             Some(CompensatorFault::GivenItself { characteristic })
-        } else if circle(file, &names, c) {
-            Some(CompensatorFault::GivenCircle { characteristic, given: given.get_ref().clone() })
+        } else if let Some(names) = circle(file, &names, c) {
+            Some(CompensatorFault::GivenCircle { names })
         } else if !limited(condition) {
             let role = "they decide which assemblies count";
             Some(CompensatorFault::NoLimits { characteristic: given.get_ref().clone(), role })
@@ -288,19 +293,19 @@ fn given(file: &StudyFile) -> Result<(), Fault> {
     Ok(())
 }
 
-/// True if the conditions of a characteristic lead back to it.
-fn circle(file: &StudyFile, names: &[&str], start: usize) -> bool {
+/// Names of the characteristics whose conditions lead back to the first of them. Returns None if they end.
+fn circle(file: &StudyFile, names: &[&str], start: usize) -> Option<Vec<String>> {
     let next = |c: usize| {
         let given = file.characteristics.0[c].1.get_ref().given.as_ref()?;
         names.iter().position(|name| *name == given.get_ref())
     };
-    let mut at = start;
+    let (mut at, mut met) = (start, Vec::new());
     for _ in 0..names.len() {
-        match next(at) {
-            Some(there) if there == start => return true,
-            Some(there) => at = there,
-            None => return false,
+        met.push(names[at].to_owned());
+        at = next(at)?;
+        if at == start {
+            return Some(met);
         }
     }
-    false
+    None
 }

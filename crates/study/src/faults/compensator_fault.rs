@@ -101,12 +101,10 @@ pub enum CompensatorFault {
         characteristic: String,
     },
     /// Conditions in a circle.
-    #[error("`{characteristic}` and `{given}` are given each other")]
+    #[error("{} are given each other", circle(names))]
     GivenCircle {
-        /// The characteristic.
-        characteristic: String,
-        /// Condition that leads back to the characteristic.
-        given: String,
+        /// The characteristics, each of which is given the next. The last one is given the first.
+        names: Vec<String>,
     },
     /// A condition without limits.
     #[error("`{characteristic}` has no limits: {role}")]
@@ -138,9 +136,20 @@ impl CompensatorFault {
             Self::ExtremeOfExtreme { .. } => "name the characteristic with the formula".into(),
             Self::ExtremeUnit { .. } => "leave `unit` out".into(),
             Self::GivenItself { .. } => "name another characteristic".into(),
-            Self::GivenCircle { .. } => "leave `given` of one of the two out".into(),
+            Self::GivenCircle { .. } => "leave `given` of one of them out".into(),
             Self::NoLimits { .. } => "write lower, upper or both".into(),
             Self::EvaluatedElsewhere => "let sensitol run the program: the points follow from its answers".into(),
+        }
+    }
+}
+
+/// Names of a circle in words: two of them, or the path of more.
+fn circle(names: &[String]) -> String {
+    match names {
+        [first, second] => format!("`{first}` and `{second}`"),
+        _ => {
+            let path: Vec<String> = names.iter().chain(names.first()).map(|name| format!("`{name}`")).collect();
+            path.join(" -> ")
         }
     }
 }

@@ -36,6 +36,9 @@ fn a_stock_is_usable() {
         (stock("values = []"), "[]", &["stock of `shim` is empty", "step = 0.1"]),
         (stock("values = [1.0, 1.1, 1.0]"), "[1.0, 1.1", &["1 is in stock twice", "leave one"]),
         (stock("values = [1.0]\nstep = 0.1"), "[1.0]", &["`values` and `step`"]),
+        (stock("range = [0.5, 1.5]"), "[0.5", &["`step` is missing", "step = 0.1"]),
+        (stock("values = \"0.1\""), "\"0.1\"", &["its numbers as a list: [0.1]"]),
+        (stock("values = [1.0]\ntarget = nan"), "nan", &["not a finite number"]),
         (stock("step = 0.1"), "0.1\n", &["`range` is missing", "range = [0.5, 1.5]"]),
         (stock("step = -0.1\nrange = [0.5, 1.5]"), "-0.1", &["-0.1 is not above 0"]),
         (stock("step = 0.1\nrange = [1.5, 0.5]"), "[1.5", &["write [0.5, 1.5]"]),
@@ -106,4 +109,16 @@ fn a_condition_is_another_characteristic_with_limits() {
     ] {
         refused(&text, "a = {", words);
     }
+}
+
+#[test]
+fn a_circle_of_three_conditions_is_shown_whole() {
+    let one = |name: &str, given: &str| format!("{name} = {{ formula = \"x\", lower = 0.5, given = \"{given}\" }}\n");
+    let text = format!(
+        "[dimensions]\nx = {{ nominal = 1.0, tolerance = 0.1 }}\n[characteristics]\n{}{}{}",
+        one("p", "q"),
+        one("q", "r"),
+        one("r", "p")
+    );
+    refused(&text, "p = {", &["`p` -> `q` -> `r` -> `p` are given each other", "one of them"]);
 }
