@@ -372,25 +372,3 @@ fn a_second_choice_leaves_the_bounds_of_the_first() {
     // Without that the bounds are those of all values that can be chosen, 0.4 to 1.6: 0.9 on either side.
     assert!(found.lower() > -0.4 && found.upper() < 0.4, "{found:?}");
 }
-
-/// The lowest place of `f` is one of two, by the sign of `c`, and that of `least` bends where `b` is 0. Points of the model give the moments,
-/// so that no kink spoils them, and a formula has no solver.
-#[test]
-fn extremes_that_bend_are_not_called_wrong() {
-    let study = of_text(
-        "[dimensions]\nc = { nominal = 0.0, tolerance = 0.3 }\nr = { nominal = 1.0, tolerance = 0.03 }\nt = { nominal = 0.0 }\n\
-         b = { nominal = 0.0, tolerance = 0.2 }\na = { nominal = 0.3, tolerance = 0.06 }\nturn = { nominal = 0.0 }\n[characteristics]\n\
-         f = { formula = \"r + ((t - 0.5)^2*4 - 1)^2*0.5 + c*t\" }\n\
-         lo = { minimum = { of = \"f\", over = \"t\", from = -0.5, to = 1.5 }, lower = 0.9, upper = 1.1 }\n\
-         gap = { formula = \"r + a*cos(2*turn) + b*sin(turn)\" }\n\
-         least = { minimum = { of = \"gap\", over = \"turn\", from = 0, to = 6.283185307179586 }, lower = 0.6 }\n",
-    );
-    let found = analyze(&study.problem, &study.options).unwrap();
-    let codes: Vec<&str> = found.warnings.iter().map(|warning| warning.code()).collect();
-    assert!(!codes.iter().any(|code| ["kink", "scatter"].contains(code)), "{codes:?}");
-    // Least value of a double well with curvature 16 in its places: `r + min(0, c) - c^2/32`. Third powers of `c` change it by 1e-5. The
-    // error of the points is some 2e-4.
-    let lo = found.characteristics[1].moments.unwrap();
-    let exact = 1.0 - 0.1 / (2.0 * std::f64::consts::PI).sqrt() - 0.01 / 32.0;
-    assert!((lo.mean() - exact).abs() < 1e-3, "{lo:?}");
-}

@@ -37,25 +37,18 @@ pub(in crate::analysis) fn of(
     };
     let mut warnings = axes(problem, outcome, c, sigma);
     // The switches of a formula, with their places, replace guesses from the axes.
-    let told = analysis.evidence.verification.as_ref().is_some_and(|verification| verification.switches.is_some());
-    // Where the moments come from points of the model, a kink spoils no figure.
-    if told || from_points(analysis) {
+    if analysis.evidence.verification.as_ref().is_some_and(|verification| verification.switches.is_some()) {
         let seen = |warning: &Warning| matches!(warning, Warning::Kink { .. } | Warning::Discontinuity { .. });
         warnings.retain(|warning| !seen(warning));
     }
     warnings.extend(pearson(analysis));
     if let Some(climbed) = &outcome.climbed {
         let mut found = climb(outcome, climbed, c, (analysis, sigma));
-        if analysis.evidence.verification.is_some() || from_points(analysis) {
-            let formula = is_formula(problem, c);
+        // If answers of a formula scatter next to the means, there is a kink or a root that is not smooth.
+        let formula = problem.function().switches(problem.outputs()[c]).is_some_and(|switches| switches.complete);
+        if analysis.evidence.verification.is_some() {
             found.retain(|warning| match warning {
-                // If answers of a formula scatter next to the means, there is a kink or a root that is not smooth.
                 Warning::Scatter { .. } => !formula,
-                Warning::UntrustedSurrogate { .. } | Warning::InteractionsLeftOut { .. }
-                    if analysis.evidence.verification.is_none() =>
-                {
-                    true
-                }
                 // The sample shows the unexplained share and its effect.
                 Warning::UntrustedSurrogate { .. } | Warning::InteractionsLeftOut { .. } => false,
                 _ => true,
@@ -64,20 +57,6 @@ pub(in crate::analysis) fn of(
         warnings.extend(found);
     }
     warnings
-}
-
-/// True if the moments come from points of the model in place of a surface.
-fn from_points(analysis: &CharacteristicAnalysis) -> bool {
-    let replaced = analysis.evidence.verification.as_ref().is_some_and(|of| of.replaced && !of.follows_surface());
-    analysis.evidence.model_sampled.is_some() || replaced
-}
-
-/// True for a formula, and for the extreme of a formula over a motion: interval arithmetic bounds it.
-fn is_formula(problem: &Problem, c: usize) -> bool {
-    let output = problem.outputs()[c];
-    let complete = problem.function().switches(output).is_some_and(|switches| switches.complete);
-    let nominal: Vec<[f64; 2]> = problem.dimensions().iter().map(|one| [one.nominal(); 2]).collect();
-    complete || problem.function().bounds(output, &nominal).is_some()
 }
 
 /// Warning of a Pearson fit that gives a wrong yield.
