@@ -473,6 +473,10 @@ class CharacteristicResult(Fitted):
     """Bases of the figures: `proof`, `points` of the model, or the `surface`."""
     coefficient_of_variation: Optional[Verified]
     """Sigma divided by the magnitude of the mean; null if unknown, and if the mean may be 0."""
+    conditional_yield: Optional[ConditionalYield]
+    """Yield of the assemblies that keep the limits of the characteristic that this one is given. None if it is given
+    none, or if it is unknown.
+    """
     constant: bool
     """True if the characteristic depends on nothing that varies, so that it has a single value."""
     coverage: Optional[CoverageIntervals]
@@ -583,9 +587,7 @@ class CharacteristicResult(Fitted):
     skewness: Optional[float]
     """Value for the third standardised moment."""
     sobol: Optional[SobolIndices]
-    """Source of the Sobol' indices of the [`sensitivities`](Self::sensitivities). None if the characteristic does
-    not vary.
-    """
+    """Source of the Sobol' indices of the `sensitivities`. None if the characteristic does not vary."""
     surface_law: Optional[SurfaceLaw]
     """Results of the surface distribution. None if the moments follow from no surface."""
     surrogate_sampling: Optional[Sampled]
@@ -706,6 +708,17 @@ class ComparisonResult(Result):
         """The characteristic of this name."""
         found: ComparedCharacteristic = self._named(name)
         return found
+
+
+class ConditionalYield(Record):
+    """Yield of the assemblies that keep the limits of another characteristic: `P(both kept) / P(other kept)`."""
+
+    given: str
+    """Characteristic whose limits decide which assemblies count."""
+    interval: Optional[List[float]]
+    """95 % interval of the share. None if the uncertainty of measured samples is unknown."""
+    yield_: float
+    """Share of these assemblies that keep the own limits."""
 
 
 class Confirmation(Record):
@@ -1582,6 +1595,10 @@ class SetUp(Record):
 class SimulatedCharacteristic(Record):
     """A characteristic with standard errors next to the values, in JSON."""
 
+    conditional_yield: Optional[ConditionalYield]
+    """Yield of the assemblies that keep the limits of the characteristic that this one is given. None if it is given
+    none, or no point keeps them.
+    """
     control: Optional[Control]
     """Effect of the surrogate as control variate. None if none was requested, or it does not vary."""
     cp: Optional[float]
@@ -2034,7 +2051,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "AllocationResultRequirements": {"sampled": AllocationResultRequirementsSampled},
     "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": Verified, "warnings": ReportedWarning},
     "Beyond": {"design_point": DesignPoint, "unmet": Unmet},
-    "CharacteristicResult": {"basis": FigureBases, "coefficient_of_variation": Verified, "coverage": CoverageIntervals, "distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "quantiles": QuantileEstimates, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
+    "CharacteristicResult": {"basis": FigureBases, "coefficient_of_variation": Verified, "conditional_yield": ConditionalYield, "coverage": CoverageIntervals, "distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "quantiles": QuantileEstimates, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
     "ComparedCharacteristic": {"methods": ComparedMethod, "reference": SimulatedCharacteristic},
     "ComparedMethod": {"error_vs_reference": ErrorVsReference, "run": RunSummary},
     "ComparisonResult": {"characteristics": ComparedCharacteristic, "evaluator": EvaluatorSummary, "not_run": NotRun},
@@ -2055,7 +2072,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "SampledFactor": {"first_order": IndexEstimate, "total": IndexEstimate},
     "SampledModel": {"histogram": Histogram},
     "Sensitivity": {"first_order": EstimatedShare, "total": EstimatedShare},
-    "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "inspection": InspectionRisks, "requirements": Judged, "sampling_interval": SamplingInterval, "sobol": SampledFactor, "standard_error": StandardErrors},
+    "SimulatedCharacteristic": {"conditional_yield": ConditionalYield, "control": Control, "distribution": Empirical, "histogram": Histogram, "inspection": InspectionRisks, "requirements": Judged, "sampling_interval": SamplingInterval, "sobol": SampledFactor, "standard_error": StandardErrors},
     "SimulationResult": {"characteristic_correlation": OutputCorrelation, "characteristics": SimulatedCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": YieldEstimate, "warnings": ReportedWarning},
     "SobolIndices": {"factors": FactorIndices},
     "SurfaceLaw": {"refuted": LawRefutation},

@@ -2,6 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sensitol::analysis::Sensitivity;
 use sensitol::assembly::{Adjustment, AssemblyFunction, Closure, Directions, Points, Request, Responses, Run};
 use sensitol::assembly::{Motion, MotionEnd, MotionExtremes, StockResponse};
 use sensitol::simulation::{Simulation, SimulationOptions, simulate};
@@ -285,7 +286,9 @@ fn a_rare_condition_is_counted_or_unknown() {
         let of = of(name);
         let [low, high] = of.interval.unwrap();
         assert!(low <= of.value && of.value <= high && high - low < most, "{name}: {of:?}");
-        assert!((of.value - exact).abs() <= 2.0 * (high - low) && of.value > 0.0, "{name}: {of:?}, exactly {exact}");
+        // The integrals are rounded to six digits.
+        let allowed = 2.0 * (high - low) + 1e-6;
+        assert!((of.value - exact).abs() <= allowed && of.value > 0.0, "{name}: {of:?}, exactly {exact}");
     }
     // With a budget no point is drawn beyond it, and the difference of the yields says nothing.
     let options = study.options.clone().with_budget(200);
@@ -307,8 +310,11 @@ fn a_choice_is_known_of_an_extreme_and_of_a_closure() {
     let found = analyze(&study.problem, &study.options).unwrap();
     let shown = |c: usize| found.characteristics[c].linear.rss.is_some();
     assert_eq!([shown(0), shown(1), shown(2)], [false, false, true]);
-    // Difference quotients over the jumps of a choice are no slopes.
-    let slopes = |c: usize| found.characteristics[c].sensitivities.iter().any(|one| one.first.or(one.second).is_some());
+    // Difference quotients over the jumps of a choice are no slopes. A dimension without influence has the slope 0.
+    let slopes = |c: usize| {
+        let known = |one: &Sensitivity| one.first.or(one.second).is_some_and(|slope| slope != 0.0);
+        found.characteristics[c].sensitivities.iter().any(known)
+    };
     assert_eq!([slopes(0), slopes(1), slopes(2)], [false, false, true]);
     let dimensions = [Dimension::normal("room", 5.5, 0.1).unwrap(), Dimension::fixed("shim", 5.0).unwrap()];
     let problem = Problem::new(dimensions, Closure::scalar("gap", |x: &[f64]| x[0] - 0.75 * x[1])).unwrap();
