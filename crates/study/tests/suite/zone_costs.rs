@@ -370,6 +370,17 @@ fn a_height_along_the_axes_of_a_pattern_is_no_lever() {
     assert!(relative(plain, 0.1 / 50.0 / 2f64.sqrt()) < 1e-12 && plain == formula, "{plain}, {formula}");
 }
 
+/// Holds that every study is refused at its line of `[costs]`, with the words of what is wrong and of the remedy.
+fn refuses(cases: &[(&str, String, &str, &str)]) {
+    for (bore, costs, what, remedy) in cases {
+        let text = text(bore, "w = { nominal = 0.1, tolerance = 0.01, unit = \"mm\" }", costs);
+        let text = if bore.contains("w\"") { text } else { text.replace("w = { nominal", "# { nominal") };
+        let error = Study::from_toml(&text, "study.toml").unwrap_err().to_string();
+        assert!(error.contains(remedy) && (*what == "write" || error.contains(what)), "{costs}\n{error}");
+        assert!(error.contains("costs."), "{error}");
+    }
+}
+
 #[test]
 fn wrong_costs_name_the_line_and_the_remedy() {
     let zone = |name: &str| format!("\"{name}\" = {{ model = \"reciprocal\", b = 0.1 }}");
@@ -393,6 +404,15 @@ fn wrong_costs_name_the_line_and_the_remedy() {
             "has two costs",
             "keep one of them",
         ),
+    ];
+    refuses(&cases);
+}
+
+#[test]
+fn costs_beyond_a_refinement_and_idle_keys_are_refused() {
+    let zone = |name: &str| format!("\"{name}\" = {{ model = \"reciprocal\", b = 0.1 }}");
+    let both = "length = 25, position = 0.1, perpendicularity = 0.02";
+    let cases = [
         (
             both,
             "\"block.bore.perpendicularity\" = { model = \"reciprocal\", b = 0.1, max = 0.06 }".to_owned(),
@@ -450,11 +470,5 @@ fn wrong_costs_name_the_line_and_the_remedy() {
         ),
         ("position = 0.1", zone("block.hole"), "block.hole", "block.bore"),
     ];
-    for (bore, costs, what, remedy) in cases {
-        let text = text(bore, "w = { nominal = 0.1, tolerance = 0.01, unit = \"mm\" }", &costs);
-        let text = if bore.contains("\"w\"") { text } else { text.replace("w = { nominal", "# { nominal") };
-        let error = Study::from_toml(&text, "study.toml").unwrap_err().to_string();
-        assert!(error.contains(remedy) && (what == "write" || error.contains(what)), "{costs}\n{error}");
-        assert!(error.contains("costs."), "{error}");
-    }
+    refuses(&cases);
 }
