@@ -16,13 +16,13 @@ use crate::problem::Problem;
 const MOST_SEARCHES: usize = 60;
 
 /// Task that is not searched yet, with the least objective that it can reach.
-struct Open {
+struct OpenTask {
     task: AllocationTask,
     bound: f64,
 }
 
 /// Allocation that keeps every refinement, with the task that gave it.
-struct Best {
+struct BestRefined {
     task: AllocationTask,
     found: Allocation,
     objective: f64,
@@ -35,8 +35,8 @@ pub(in crate::allocation) struct RefinementSearch<'s> {
     pub(in crate::allocation) options: &'s AllocationOptions,
     pub(in crate::allocation) run: &'s Run<'s>,
     pub(in crate::allocation) written: Option<AsWritten<'s>>,
-    open: Vec<Open>,
-    best: Option<Best>,
+    open: Vec<OpenTask>,
+    best: Option<BestRefined>,
     /// Least objective of what is left out unsearched.
     left_out: f64,
     /// Weakest status among the bounds; `Optimal` if all of them are proven.
@@ -99,8 +99,8 @@ impl<'s> RefinementSearch<'s> {
         Ok(self.concluded(&found, last, best.objective))
     }
 
-    /// Open task with the least bound. Returns None if no open task can be better than the best one.
-    fn next(&mut self) -> Option<Open> {
+    /// OpenTask task with the least bound. Returns None if no open task can be better than the best one.
+    fn next(&mut self) -> Option<OpenTask> {
         let least = (0..self.open.len()).min_by(|&a, &b| self.open[a].bound.total_cmp(&self.open[b].bound))?;
         let next = self.open.swap_remove(least);
         let can_be_better =
@@ -116,7 +116,7 @@ impl<'s> RefinementSearch<'s> {
                 self.weakest = weaker(self.weakest, found.status);
             }
             if self.best.as_ref().is_none_or(|best| objective < best.objective) {
-                self.best = Some(Best { task, found, objective });
+                self.best = Some(BestRefined { task, found, objective });
             }
             return;
         }
@@ -125,7 +125,7 @@ impl<'s> RefinementSearch<'s> {
         if !is_exact {
             self.left_out = self.left_out.min(objective);
         }
-        self.open.extend(tasks.into_iter().map(|task| Open { task, bound: objective }));
+        self.open.extend(tasks.into_iter().map(|task| OpenTask { task, bound: objective }));
     }
 
     /// Allocation with the figures that are those of the whole task.

@@ -211,11 +211,11 @@ fn refined(
         return Ok(None);
     };
     let (inner, outer) = if is_inner { (zone.key, other.key) } else { (other.key, zone.key) };
-    Bounded { cost, is_inner, inner, outer, bound }.key(entry)
+    BoundedCost { cost, is_inner, inner, outer, bound }.key(entry)
 }
 
 /// Cost of one of two zones, the other of which has no cost and bounds it.
-struct Bounded<'c> {
+struct BoundedCost<'c> {
     cost: &'c ZoneCost,
     is_inner: bool,
     inner: &'static str,
@@ -224,7 +224,7 @@ struct Bounded<'c> {
     bound: f64,
 }
 
-impl Bounded<'_> {
+impl BoundedCost<'_> {
     /// True if a half width breaks the refinement.
     fn is_beyond(&self, half: f64) -> bool {
         if self.is_inner { half > self.bound } else { half < self.bound }
