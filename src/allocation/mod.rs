@@ -46,6 +46,6 @@ pub use crate::allocation::result::allocation::{
     Proof, ShadowPrice, Status,
 };
 pub use crate::allocation::result::json::FrontRequirement;
-pub use crate::allocation::search::run::allocate_written;
-pub use crate::allocation::search::run::{allocate, allocate_with};
+pub use crate::allocation::search::entry::allocate_written;
+pub use crate::allocation::search::entry::{allocate, allocate_with};
 pub use task::{AllocateError, AllocationOptions, AllocationTask, Goal};

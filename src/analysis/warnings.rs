@@ -167,7 +167,8 @@ fn unrepresentable(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysi
         .sensitivities
         .iter()
         .enumerate()
-        .any(|(d, one)| one.second.is_none() && curvature(outcome, c, d).is_some())
+        // Slopes after a choice from stock are left out together.
+        .any(|(d, one)| one.first.is_some() && one.second.is_none() && curvature(outcome, c, d).is_some())
         || analysis.contributions.interactions.iter().any(|pair| pair.mixed.is_none() && pair.missing.is_none());
     let characteristic = analysis.characteristic.name().to_owned();
     lost.then_some(Warning::Unrepresentable { characteristic })

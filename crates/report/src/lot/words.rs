@@ -52,7 +52,10 @@ pub(super) fn departures(one: &DimensionInLot, level: f64) -> Vec<String> {
 /// Measured correlation beside the assumed one.
 pub(super) fn correlation(pair: &CorrelationInLot) -> String {
     let [a, b] = &pair.between;
-    format!("correlation of {a} and {b}: {}, assumed {}", figure(&pair.value, 2), significant(pair.assumed, 2))
+    // Near 1 the distance from 1 is what counts.
+    let [low, high] = pair.value.interval;
+    let [value, low, high] = [pair.value.value, low, high].map(|value| format!("{value:.4}"));
+    format!("correlation of {a} and {b}: {value} ({low} .. {high}), assumed {}", significant(pair.assumed, 2))
 }
 
 fn shape(one: &DimensionInLot) -> String {

@@ -302,7 +302,8 @@ fn processes_of_refined_zones_are_chosen_together() {
         let [wide, narrow] = ["p.b1.position", "p.b1.parallelism"].map(|name| after(&rows, name));
         assert!(narrow <= wide * (1.0 + 1e-9), "{rows:?}");
         assert!(relative(found.cost_after.unwrap(), expected) < 1e-12, "{:?}, {expected}", found.cost_after);
-        assert_eq!(found.status, Status::Optimal);
+        // The search proves no bound of all pairs: it found the cheapest, and does not call it proven.
+        assert!(matches!(found.status, Status::Optimal | Status::AlmostOptimal), "{:?}", found.status);
         study.rewritten(&found.problem).unwrap();
     }
     for (tight, most) in [(1.2, 0.06), (1.2, 0.03)] {
@@ -312,7 +313,7 @@ fn processes_of_refined_zones_are_chosen_together() {
         let found = allocated(&study);
         let expected = least_cost(0.20857, &position(tight), &|t| Some(1.0 + 1.0 / t.min(most)));
         assert!(relative(found.cost_after.unwrap(), expected) < 1e-6, "{:?}, {expected}", found.cost_after);
-        assert_eq!(found.status, Status::Optimal);
+        assert!(matches!(found.status, Status::Optimal | Status::AlmostOptimal), "{:?}", found.status);
     }
 }
 
@@ -338,10 +339,11 @@ fn a_zone_without_a_cost_bounds_a_table() {
     let rows = allocate("\"p.b1.parallelism\" = { table = [[0.01, 5], [0.04, 3]] }");
     assert!(relative(after(&rows, "p.b1.parallelism"), 0.04) < 1e-6, "{rows:?}");
     // Three sigma are the root of 0.0125 + Tpos^2, with Tpos of at least 0.025.
-    for (limit, status) in [(0.1130, Status::Infeasible), (0.1150, Status::Optimal)] {
+    for (limit, keeps) in [(0.1130, false), (0.1150, true)] {
         let costs = "\"p.b1.position\" = { table = [[0.001, 5], [0.1, 2]] }";
         let found = allocated(&read(&bores("position = 0.1, parallelism = 0.05", limit, costs)));
-        assert_eq!(found.status, status, "{limit}");
+        let kept = !matches!(found.status, Status::Infeasible | Status::NoFeasiblePointFound);
+        assert_eq!(kept, keeps, "{limit}: {:?}", found.status);
     }
 }
 
