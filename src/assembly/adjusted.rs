@@ -165,7 +165,11 @@ impl Adjusted {
     }
 
     fn choice_of(&self, one: &Adjustment) -> String {
-        format!("the choice of `{}`", self.signature.inputs[one.input].name)
+        // A closure does not name its inputs.
+        match self.signature.inputs.get(one.input) {
+            Some(input) => format!("the choice of `{}`", input.name),
+            None => format!("the choice of input {}", one.input + 1),
+        }
     }
 
     /// Places of the stock that can be chosen within a region, and the greatest distance from the target that a choice leaves.

@@ -6,7 +6,7 @@ use crate::analysis::distribution::surface_law::SurfaceShares;
 use crate::analysis::result::sampled_model::SampledModel;
 use crate::analysis::result::verification::Verification;
 use crate::method::Residual;
-use sensitol_numeric::capability::{Capability, CapabilityShape, Law};
+use sensitol_numeric::capability::{Capability, Law};
 use sensitol_numeric::moments::Sampled;
 use sensitol_numeric::pearson::PearsonError;
 use sensitol_numeric::power::rescale;
@@ -47,11 +47,11 @@ pub struct Evidence {
     pub law: Option<Result<Law, PearsonError>>,
     /// Capability by the Pearson fit.
     #[serde(rename = "pearson_fit")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::capability::CapabilityShape>"))]
     pub pearson: Option<Capability>,
     /// Capability by the normal distribution with the same mean and sigma.
     #[serde(rename = "normal_fit")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<CapabilityShape>"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::capability::CapabilityShape>"))]
     pub normal: Option<Capability>,
     /// Uncertainty of the results because measured dimensions are known by samples. None if there are no measured dimensions.
     #[serde(rename = "sampling_interval")]

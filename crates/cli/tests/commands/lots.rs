@@ -148,7 +148,8 @@ fn verdicts_and_departures_agree() {
     // The shifted depth of the example changes the prediction, and is the one that is named.
     std::fs::write(folder.path().join("lot.csv"), read(FILES[0])).unwrap();
     let (_, stdout, _) = run(folder.path(), &["compare-lot", "study.toml", "lot.csv"]);
-    assert!(stdout.contains("the parts change the prediction, most by `depth`"), "{stdout}");
+    let unwrapped = stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(unwrapped.contains("the parts change the prediction, most by `depth`"), "{stdout}");
 }
 
 #[test]
