@@ -126,13 +126,19 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         let within = (self.range.bounds.as_ref().filter(|_| self.range.extremes.is_none() && proven.is_none()))
             .map(|bounds| bounds.bounds)
             .filter(|within| !self.range.worst_case.is_some_and(|linear| same([*within, linear])));
-        let mut rows = vec![
-            (FIRST_INTERVAL, around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma), end_error(3.0))),
-            ("RSS", around(self.linear.middle, self.linear.rss, None)),
-            ("inflated RSS", around(self.linear.middle, self.linear.inflated_rss, None)),
-            ("mean-shift RSS", around(self.linear.middle, self.linear.mean_shift_rss, None)),
-            worst,
-        ];
+        let three_sigma = around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma), end_error(3.0));
+        let mut rows = vec![(FIRST_INTERVAL, three_sigma)];
+        // A characteristic without slopes, as after a choice from stock, has none of these.
+        if self.linear.rss.is_some() || self.range.worst_case.is_some() {
+            rows.extend([
+                ("RSS", around(self.linear.middle, self.linear.rss, None)),
+                ("inflated RSS", around(self.linear.middle, self.linear.inflated_rss, None)),
+                ("mean-shift RSS", around(self.linear.middle, self.linear.mean_shift_rss, None)),
+            ]);
+        }
+        if self.range.worst_case.is_some() || proven.is_some() {
+            rows.push(worst);
+        }
         rows.extend(within.map(|within| ("worst case within", outward(within, scale, None).join(" .. "))));
         let most = rows.len();
         rows.extend(linear);
