@@ -116,7 +116,7 @@ fn default_reports_are_short() {
             }
             section.push(line);
             let lines = section.iter().filter(|line| !line.is_empty()).count();
-            assert!(lines <= 33 || report.starts_with(section[0]), "{name}: {lines} lines\n{}", section.join("\n"));
+            assert!(lines <= 30 || report.starts_with(section[0]), "{name}: {lines} lines\n{}", section.join("\n"));
         }
         wide.extend(report.lines().filter(|line| line.chars().count() > 80).map(|line| format!("{name}: {line}")));
     }
