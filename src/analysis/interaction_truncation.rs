@@ -16,7 +16,7 @@ impl Analysis {
 }
 
 impl CharacteristicAnalysis {
-    /// Keeps the interactions that matter. The sum of the others is [`interactions_remainder`](Self::interactions_remainder).
+    /// Keeps the interactions that matter. The sum of the others is [`interactions_remainder`](crate::analysis::ContributionFigures::interactions_remainder).
     pub fn shorten(&mut self) {
         let mut remainder = self.contributions.interactions_remainder.unwrap_or_default();
         // The strongest are first: the index is the rank.

@@ -118,7 +118,7 @@ impl Curve {
 
     /// Cost by a formula of `T`, the half band in the unit of the dimension.
     ///
-    /// [`Offer::between`] checks that it is positive and falls, because its bounds are known there.
+    /// [`Offer::between`](crate::allocation::Offer::between) checks that it is positive and falls, because its bounds are known there.
     ///
     /// # Errors
     ///

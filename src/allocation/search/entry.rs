@@ -17,7 +17,7 @@ use crate::problem::Problem;
 /// # Errors
 ///
 /// If task, options and problem do not fit. Nothing is evaluated then. Requirements that cannot be kept are no error
-/// but a [`Status`].
+/// but a [`Status`](crate::allocation::Status).
 ///
 /// ```
 /// use sensitol::{Characteristic, Closure, Dimension, Problem, Requirement, SpecLimits};
