@@ -49,11 +49,12 @@ impl Portions {
     /// that few points are divided evenly too.
     pub(super) fn of_shard(self, shard: Shard) -> Self {
         if self.costly {
-            let slices = (0..self.each).step_by(self.rows as usize).map(|first| {
-                let [low, high] = shard.range(self.rows.min(self.each - first));
+            let slice = |rows: u64| {
+                let [low, high] = shard.range(rows);
                 high - low
-            });
-            return Self { total: slices.sum(), shard: Some(shard), ..self };
+            };
+            let total = self.each / self.rows * slice(self.rows) + slice(self.each % self.rows);
+            return Self { total, shard: Some(shard), ..self };
         }
         let [low, high] =
             shard.range(self.each.div_ceil(self.rows)).map(|portion| (portion * self.rows).min(self.each));

@@ -2,7 +2,7 @@
 //!
 //! A shard has its own points of the one sample that the seed defines. The points of all shards together are those of a single run. Counts
 //! and bins are whole numbers, which add up exactly. Means and central sums are merged pairwise (Pébay 2008), so that moments differ from
-//! those of one run by rounding alone.
+//! those of one run by rounding alone. Few points choose the bins of a costly model, so that its quantiles may differ within a bin.
 
 use crate::assembly::{Points, Responses, Run};
 use crate::evaluation::{Evaluator, Restoration, Restore, at_any_size};
@@ -107,6 +107,9 @@ fn evaluated(
     if tally.samples() < portions.total {
         let (answered, points) = (tally.samples(), portions.total);
         return Err(ShardError::Stopped { answered, points, reason: run.why_open() });
+    }
+    if problem.evaluator().is_some_and(|evaluator| evaluator.unconfirmed > 0) {
+        return Err(ShardError::Unconfirmed);
     }
     let ledger = evaluator.into_ledger();
     let (characteristics, together, answered, drawn) = tally.into_sums();

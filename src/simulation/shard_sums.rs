@@ -132,9 +132,12 @@ pub enum ShardError {
         /// Name of the output.
         output: String,
     },
+    /// Answers of the model lack the check by a fresh process.
+    #[error("answers of the model are not confirmed by a fresh process: sums of such a model are not merged")]
+    Unconfirmed,
     /// The values are too large or too small for sums in doubles.
     #[error(
-        "values of this size are computed in other units within one run: choose units in which they are between 1e-100 and 1e100"
+        "values of this size are computed in other units within one run: choose units in which they are between 1e-19 and 1e19"
     )]
     Extreme,
     /// There is nothing to merge.
@@ -152,7 +155,7 @@ pub enum ShardError {
         /// Value of the first shard.
         expected: String,
     },
-    /// The same shard is given twice, with different sums.
+    /// A shard that is given twice, with different sums.
     #[error("shard {number} is given twice, and its sums differ: evaluate it again")]
     Contradiction {
         /// Number of the shard.

@@ -125,6 +125,16 @@ fn points_of_a_costly_model_are_divided_evenly() {
     }
 }
 
+/// Two portions of a costly model: the slices of both add up to the points of a shard.
+#[test]
+fn slices_of_several_portions_add_up() {
+    let (problem, asked) = costly(&problem());
+    let options = SimulationOptions::default().with_samples(5000);
+    let shards: Vec<ShardSums> = (1..=3).map(|number| shard(&problem, &options, number, 3).unwrap()).collect();
+    assert_eq!(asked.load(Ordering::Relaxed), 5000 + 3 * 64);
+    assert_eq!(merged(&problem, &options, &shards).unwrap().samples, 5000);
+}
+
 #[test]
 fn sums_that_do_not_belong_together_are_refused() {
     let problem = problem();

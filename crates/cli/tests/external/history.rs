@@ -265,6 +265,14 @@ fn what_nothing_confirms_ends_with_3() {
         assert_eq!((code, &report["evaluator"]["unconfirmed"]), (Some(0), &0.into()), "{more:?}: {error}");
         assert_eq!(report["evaluator"]["crashes"], 0);
     }
+    // A shard has no verdict that could be withheld: its sums are not written.
+    let shard = ["simulate", "--samples", "40", "--shards", "2", "--shard", "1"];
+    let (code, report, error) = run("drift", &shard);
+    let codes: Vec<&str> =
+        report["errors"].as_array().unwrap().iter().map(|one| one["code"].as_str().unwrap()).collect();
+    assert_eq!((code, codes), (Some(2), vec!["shard"]), "{error}");
+    let (code, _, error) = run("plain", &shard);
+    assert_eq!(code, Some(0), "{error}");
     // All answers are right in the end, by fresh processes.
     let (code, report, error) = run("toggle", &["analyze", "--method", "full"]);
     assert_eq!((code, &report["evaluator"]["unconfirmed"]), (Some(0), &0.into()), "{error}");
