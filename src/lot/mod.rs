@@ -59,7 +59,7 @@ pub struct LotGrouping {
 pub struct LotColumn {
     /// Name of the dimension or characteristic.
     pub name: String,
-    /// Value of each row; None where nothing was measured.
+    /// Values by row, None if nothing was measured.
     pub values: Vec<Option<f64>>,
 }
 
@@ -202,22 +202,6 @@ pub fn compare_lot(
         examined_correlations: examined,
         characteristics,
         assumed_parts: options.assumed_parts,
-        run: both(&assumed.run, &by_parts.run),
+        run: assumed.run.and(&by_parts.run),
     })
-}
-
-/// Sum of two runs.
-fn both(a: &RunSummary, b: &RunSummary) -> RunSummary {
-    RunSummary {
-        evaluations: a.evaluations + b.evaluations,
-        cached: a.cached + b.cached,
-        retried: a.retried + b.retried,
-        failed: a.failed + b.failed,
-        stages: a.stages + b.stages,
-        wall: a.wall + b.wall,
-        in_model: a.in_model + b.in_model,
-        seed: a.seed.or(b.seed),
-        stopped: a.stopped.or(b.stopped),
-        evaluator: b.evaluator.or(a.evaluator),
-    }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::Study;
 use crate::folder::Format;
-use crate::rewrite::RewriteError;
+use crate::rewrite::{RewriteError, edited};
 use crate::tree::{Key, Tree, Value};
 use crate::write;
 use sensitol_numeric::correlation::Pair;
@@ -88,14 +88,7 @@ impl Study {
                 (None, true) => kept_correlations.push(pair.clone()),
             }
         }
-        edits.sort_by_key(|(place, _)| (place.start, place.end));
-        let (mut text, mut at) = (String::with_capacity(self.text.len()), 0);
-        for (place, new) in &edits {
-            text += &self.text[at..place.start];
-            text += new;
-            at = place.end;
-        }
-        text += &self.text[at..];
+        let mut text = edited(&self.text, edits);
         for pair in added {
             if self.format == Format::Json {
                 let why = "its correlation is new, and none is added to a study in JSON";

@@ -61,6 +61,18 @@ const SAME_PLACE: f64 = 1e-3;
 /// Relative tolerance within which two distributions count as the same.
 const ALIKE: f64 = 1e-9;
 
+/// Text with other texts at these places, which do not overlap.
+pub(crate) fn edited(old: &str, mut edits: Vec<(Range<usize>, String)>) -> String {
+    edits.sort_by_key(|(place, _)| (place.start, place.end));
+    let (mut text, mut at) = (String::with_capacity(old.len()), 0);
+    for (place, new) in &edits {
+        text += &old[at..place.start];
+        text += new;
+        at = place.end;
+    }
+    text + &old[at..]
+}
+
 impl Study {
     /// Rewrites the study with the tolerances and nominal values of `wanted`, a problem with the same dimensions.
     ///
@@ -135,15 +147,7 @@ impl Study {
                 replaced_fits.push(name.to_owned());
             }
         }
-        // Assemble the new text from the old one and the replacements, in the order of their places.
-        edits.sort_by_key(|(place, _)| (place.start, place.end));
-        let (mut text, mut at) = (String::with_capacity(self.text.len()), 0);
-        for (place, new) in &edits {
-            text += &self.text[at..place.start];
-            text += new;
-            at = place.end;
-        }
-        text += &self.text[at..];
+        let text = edited(&self.text, edits);
         // Read the text again, since a wrong replacement must not go unnoticed.
         let read = self.read_again(&text)?;
         for (found, new) in read.problem.dimensions().iter().zip(wanted.dimensions()) {
