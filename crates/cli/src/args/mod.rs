@@ -15,7 +15,7 @@ use crate::args::import_args::ImportArgs;
 pub(super) use crate::args::init_args::InitArgs;
 pub(super) use crate::args::lot_args::CompareLotArgs;
 pub(super) use crate::args::page_args::{ServeArgs, WorkbenchArgs};
-pub(super) use crate::args::sampled_args::{CompareArgs, MergeArgs, SampledArgs, SimulateArgs};
+pub(super) use crate::args::sampled_args::{CompareArgs, MergeArgs, SampleReportArgs, SampledArgs, SimulateArgs};
 use crate::args::shared_args::OUTPUT;
 pub(super) use crate::args::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
 use crate::commands::examples::ExamplesArgs;
@@ -105,7 +105,7 @@ pub(super) enum Command {
     /// Validates studies; evaluates nothing
     ///
     /// Nothing is evaluated or executed. Each study is validated, even if another has errors; the exit code is 2 if one has.
-    /// With --json each has its errors with line, column and advice; several studies give one array.
+    /// Errors have line, column and advice with --json; several studies give one array.
     #[command(
         after_help = "Examples:\n  sensitol check examples/stacked-blocks/study.toml\n  sensitol check examples/stacked-blocks/study.toml examples/engine-balance/study.toml"
     )]

@@ -44,7 +44,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
     pub(crate) samples: Option<u64>,
 
-    /// How points are drawn: random, or sobol for scrambled Sobol' points
+    /// Kind of points: random, or sobol for scrambled Sobol' points
     #[arg(long, value_name = "SAMPLER", default_value = "random")]
     pub(crate) sampler: SamplerArg,
 
@@ -84,6 +84,13 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true, requires = "shards")]
     pub(crate) shard: Option<u64>,
 
+    #[command(flatten)]
+    pub(crate) report: SampleReportArgs,
+}
+
+/// Report of a sample, and the exit code that follows from it.
+#[derive(Debug, Args)]
+pub(crate) struct SampleReportArgs {
     /// Exit with 1 unless the sample shows that every target_yield is met
     #[arg(long)]
     pub(crate) check: bool,
@@ -109,20 +116,8 @@ pub(crate) struct MergeArgs {
     #[arg(value_name = "SHARD.json", required = true)]
     pub(crate) shards: Vec<PathBuf>,
 
-    /// Exit with 1 unless the sample shows that every target_yield is met
-    #[arg(long)]
-    pub(crate) check: bool,
-
-    /// Write the report as one HTML page
-    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
-    pub(crate) html: Option<PathBuf>,
-
-    /// Write estimates and histogram as CSV files into DIR, which is made where it is missing
-    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
-    pub(crate) csv: Option<PathBuf>,
-
     #[command(flatten)]
-    pub(crate) output: OutputArgs,
+    pub(crate) report: SampleReportArgs,
 }
 
 #[derive(Debug, Args)]

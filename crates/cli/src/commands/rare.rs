@@ -19,11 +19,12 @@ use sensitol_study::Study;
 const SAMPLES: [u64; 2] = [10_000, 1000];
 
 pub(crate) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exit, Failure> {
-    let mut files = Files::of(&asked.of.study, study, asked.of.work.journal.as_deref()).forced(asked.output.force);
-    let destination = files.output(&asked.output)?;
+    let mut files =
+        Files::of(&asked.of.study, study, asked.of.work.journal.as_deref()).forced(asked.report.output.force);
+    let destination = files.output(&asked.report.output)?;
     let names = ["rare.csv".to_owned()];
-    let folder = files.folder(asked.csv.as_deref(), &names)?;
-    let page = files.file(asked.html.as_deref())?;
+    let folder = files.folder(asked.report.csv.as_deref(), &names)?;
+    let page = files.file(asked.report.html.as_deref())?;
     let costly = study.problem.function().signature().costly;
     let mut options = RareOptions::default();
     options.samples = asked.samples.unwrap_or(SAMPLES[usize::from(costly)]);
@@ -38,8 +39,11 @@ pub(crate) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     let about = clock.about(study);
     let report = RareReport::of(&study.problem, &found, about);
     let document = report.document();
-    let written =
-        destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
+    let written = destination.write(&if asked.report.output.json {
+        json(&report)
+    } else {
+        text(&document, look.style(&asked.report.output))
+    });
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &["rare"]))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&rare_html(&report))));
     look.tell_all(&report.warnings);
@@ -59,6 +63,6 @@ pub(crate) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     }
     let judged = found.characteristics.iter().flat_map(RareCharacteristic::requirements);
     let judged = judged.chain(found.joint_requirement);
-    let exit = if asked.check { checked(found.run.unfinished(), judged) } else { Exit::Done };
+    let exit = if asked.report.check { checked(found.run.unfinished(), judged) } else { Exit::Done };
     Ok(confirmed(exit, &found.run))
 }

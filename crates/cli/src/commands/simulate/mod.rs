@@ -2,10 +2,7 @@
 
 pub(crate) mod shard;
 
-use std::path::Path;
-
-use crate::args::shared_args::OutputArgs;
-use crate::args::{SamplerArg, SimulateArgs};
+use crate::args::{SampleReportArgs, SamplerArg, SimulateArgs};
 use crate::commands::rare;
 use crate::csv::CsvFolder;
 use crate::failure::{Exit, Failure};
@@ -37,19 +34,20 @@ pub(crate) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         return shard::run(asked, Shard::new(number, count)?, look);
     }
     let study = study::read_sampled(&asked.of, look)?;
-    if asked.check && !judges(&study) {
+    if asked.report.check && !judges(&study) {
         return Err(Failure::NothingToCheck);
     }
     if asked.rare {
         return rare::run(asked, &study, look);
     }
-    let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref()).forced(asked.output.force);
-    let reported = Reported::open(&mut files, &asked.output, asked.csv.as_deref(), asked.html.as_deref(), asked.sobol)?;
+    let mut files =
+        Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref()).forced(asked.report.output.force);
+    let reported = Reported::open(&mut files, &asked.report, asked.sobol)?;
     let options = options(asked, &study);
     let clock = Clock::start(asked.of.work.time);
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look);
     kept(&study.problem)?;
-    report(&study, &simulation?, reported, (asked.check, &clock), look)
+    report(&study, &simulation?, reported, &clock, look)
 }
 
 /// True if the study has a requirement to judge.
@@ -79,7 +77,7 @@ pub(super) fn options(asked: &SimulateArgs, study: &Study) -> SimulationOptions 
 
 /// Files into which the report of a simulation is written, opened before anything is evaluated.
 pub(super) struct Reported<'a> {
-    asked: &'a OutputArgs,
+    asked: &'a SampleReportArgs,
     destination: Destination,
     folder: Option<CsvFolder>,
     tables: &'static [&'static str],
@@ -88,18 +86,12 @@ pub(super) struct Reported<'a> {
 
 impl<'a> Reported<'a> {
     /// Opens the files. `indices` adds the table of Sobol' indices.
-    pub(super) fn open(
-        files: &mut Files,
-        asked: &'a OutputArgs,
-        csv: Option<&Path>,
-        html: Option<&Path>,
-        indices: bool,
-    ) -> Result<Self, Failure> {
-        let destination = files.output(asked)?;
+    pub(super) fn open(files: &mut Files, asked: &'a SampleReportArgs, indices: bool) -> Result<Self, Failure> {
+        let destination = files.output(&asked.output)?;
         let tables = if indices { &TABLES[..] } else { &TABLES[..2] };
         let names: Vec<String> = tables.iter().map(|name| format!("{name}.csv")).collect();
-        let folder = files.folder(csv, &names)?;
-        let page = files.file(html)?;
+        let folder = files.folder(asked.csv.as_deref(), &names)?;
+        let page = files.file(asked.html.as_deref())?;
         Ok(Self { asked, destination, folder, tables, page })
     }
 }
@@ -109,12 +101,12 @@ pub(super) fn report(
     study: &Study,
     simulation: &Simulation,
     to: Reported<'_>,
-    (check, clock): (bool, &Clock),
+    clock: &Clock,
     look: Look,
 ) -> Result<Exit, Failure> {
     let report = SimulationReport::of(&study.problem, simulation, clock.about(study));
     let document = report.document();
-    let text = if to.asked.json { json(&report) } else { text(&document, look.style(to.asked)) };
+    let text = if to.asked.output.json { json(&report) } else { text(&document, look.style(&to.asked.output)) };
     let written = to.destination.write(&text);
     let written = written.and(to.folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, to.tables))));
     let written = written.and(to.page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
@@ -133,7 +125,7 @@ pub(super) fn report(
     }
     let judged = simulation.characteristics.iter().flat_map(SimulatedCharacteristic::requirements);
     let judged = judged.chain(simulation.joint_requirement);
-    let exit = if check { checked(simulation.run.unfinished(), judged) } else { Exit::Done };
+    let exit = if to.asked.check { checked(simulation.run.unfinished(), judged) } else { Exit::Done };
     Ok(confirmed(exit, &simulation.run))
 }
 

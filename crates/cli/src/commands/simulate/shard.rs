@@ -33,8 +33,9 @@ struct ShardFile {
 /// Evaluates one shard and writes its sums.
 pub(crate) fn run(asked: &SimulateArgs, shard: Shard, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;
-    let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref()).forced(asked.output.force);
-    let destination = files.output_of(&asked.output, &Content::Points { header: FIRST_LINE })?;
+    let mut files =
+        Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref()).forced(asked.report.output.force);
+    let destination = files.output_of(&asked.report.output, &Content::Points { header: FIRST_LINE })?;
     let options = options(asked, &study);
     let clock = Clock::start(asked.of.work.time);
     let sums = sampling(asked.of.threads, &clock, look, |run, pace| {
@@ -60,10 +61,10 @@ pub(crate) fn run(asked: &SimulateArgs, shard: Shard, look: Look) -> Result<Exit
 /// Merges the sums of all shards to the report of one run.
 pub(crate) fn merge(asked: &MergeArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;
-    if asked.check && !judges(&study) {
+    if asked.report.check && !judges(&study) {
         return Err(Failure::NothingToCheck);
     }
-    let mut files = Files::of(&asked.of.study, &study, None).forced(asked.output.force);
+    let mut files = Files::of(&asked.of.study, &study, None).forced(asked.report.output.force);
     let mut sums = Vec::with_capacity(asked.shards.len());
     for path in &asked.shards {
         files.reads(path, "the sums of a shard");
@@ -81,12 +82,12 @@ pub(crate) fn merge(asked: &MergeArgs, look: Look) -> Result<Exit, Failure> {
         }
         sums.push(file.sums);
     }
-    let reported = Reported::open(&mut files, &asked.output, asked.csv.as_deref(), asked.html.as_deref(), false)?;
+    let reported = Reported::open(&mut files, &asked.report, false)?;
     let mut options = SimulationOptions::default();
     options.target_joint_yield = study.options.target_joint_yield;
     let clock = Clock::start(asked.of.work.time);
     let merged = sampling(asked.of.threads, &clock, look, |run, _| merge_shards(&study.problem, &options, &sums, run))?;
-    report(&study, &merged?, reported, (asked.check, &clock), look)
+    report(&study, &merged?, reported, &clock, look)
 }
 
 /// Reads the file of a shard.
