@@ -10,6 +10,8 @@ mod sampling;
 mod sobol_estimate;
 mod warnings;
 
+use std::cell::OnceCell;
+
 use crate::analysis::distribution::conditional;
 pub use crate::analysis::distribution::law_guard::{LawRefutation, LawTest};
 pub use crate::analysis::distribution::moment_basis::{Fit, NoFit, Surface};
@@ -396,11 +398,12 @@ pub(crate) fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) ->
 }
 
 fn of_all(problem: &Problem, outcome: &Outcome) -> Vec<(CharacteristicAnalysis, Option<Shares>)> {
-    let dependence = problem.dependence();
+    // Only a choice from stock needs it, and it is large with many dimensions and characteristics.
+    let dependence = OnceCell::new();
     let of = |c: usize| {
         let (mut one, shares) = CharacteristicAnalysis::of(problem, outcome, c);
         if problem.choice(c).is_some() {
-            one.leave_out_linear(&dependence[c]);
+            one.leave_out_linear(&dependence.get_or_init(|| problem.dependence())[c]);
         }
         (one, shares)
     };

@@ -158,9 +158,11 @@ const BLUR: f64 = 2e-5;
 pub(super) fn blur(surface: &Surface, sigma: f64) -> Option<f64> {
     let (discrete, smooth): (Vec<usize>, Vec<usize>) =
         (0..surface.len()).partition(|&j| surface.inputs[j].is_discrete());
+    if discrete.is_empty() || smooth.is_empty() {
+        return None;
+    }
     let spread: f64 = smooth.iter().map(|&j| most_effect(surface, j)).sum();
-    let narrow = !discrete.is_empty() && !smooth.is_empty() && spread < NARROW * sigma;
-    narrow.then_some(BLUR * sigma)
+    (spread < NARROW * sigma).then_some(BLUR * sigma)
 }
 
 /// Effect of an input at its ends, or at three sigmas where these lie farther out.
