@@ -1,13 +1,11 @@
 //! Zones that refine others: the tolerance of an orientation is never wider than that of its location.
 //!
-//! Where the cheapest tolerances break this and all of them are free with convex costs, both are one tolerance at the
-//! optimum. Lists of offers are split until the cheapest tolerances keep it.
+//! Both are one tolerance at the optimum if the cheapest tolerances break this, and all are free with convex costs. Lists of offers are split until the cheapest tolerances keep it.
 
 use std::ops::Range;
 
 use crate::allocation::cost::cost_curve::Curve;
-use crate::allocation::cost::priced_group::{Offer, Priced};
-use crate::allocation::cost::priced_group::{PricedZone, ZonePart};
+use crate::allocation::cost::priced_group::{Offer, Priced, PricedZone, ZonePart};
 use crate::allocation::result::allocation::Allocation;
 use crate::allocation::task::{AllocateError, AllocationTask, Goal};
 

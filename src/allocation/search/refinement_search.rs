@@ -99,7 +99,7 @@ impl<'s> RefinementSearch<'s> {
         Ok(self.concluded(&found, last, best.objective))
     }
 
-    /// OpenTask task with the least bound. Returns None if no open task can be better than the best one.
+    /// Open task with the least bound. Returns None if no open task can be better than the best one.
     fn next(&mut self) -> Option<OpenTask> {
         let least = (0..self.open.len()).min_by(|&a, &b| self.open[a].bound.total_cmp(&self.open[b].bound))?;
         let next = self.open.swap_remove(least);

@@ -102,7 +102,7 @@ fn errors_beside_a_study_are_json_too() {
     }
 }
 
-/// Where every study fails, the array of several still is on stdout, and a file stays as it was.
+/// The array of several studies is on stdout even if all of them fail, and a file stays as it was.
 #[test]
 fn several_studies_that_fail_give_an_array() {
     let (exit, value, _) = printed(&["analyze", "nowhere.toml", "elsewhere.toml", "--json"]);
