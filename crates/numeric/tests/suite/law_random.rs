@@ -362,16 +362,20 @@ fn quantiles_beside_a_gap_lie_in_their_cluster() {
     }
 }
 
+/// Clusters about -2.58, -2.32, 2.32 and 2.58, each with a quarter of the values: `width` is the sigma of each.
+fn four_clusters(width: f64, beside: Law) -> SurfaceLaw {
+    let two = || -> Law { Arc::new(TwoValues::new(-1.0, 1.0).unwrap()) };
+    let parts = [2.45, 0.13, width].map(|factor| Some(Univariate::of_coefficients(&[factor])));
+    let surrogate = Surrogate { centre: 0.0, parts: parts.to_vec(), interactions: Interactions::none(3) };
+    SurfaceLaw::of(&surrogate, &[two(), two(), beside], None, &LawOptions::default()).unwrap()
+}
+
 /// Two pairs of values with a narrow normal distribution beside each: the same clusters, of a law without ends. Quantiles are those of the
 /// normal distribution in each cluster, whose neighbours have less than 1e-300 of it.
 #[test]
 fn quantiles_of_a_law_without_ends_lie_in_their_cluster() {
-    let two = || -> Law { Arc::new(TwoValues::new(-1.0, 1.0).unwrap()) };
     for width in [1e-5, 1e-3] {
-        let parts = [2.45, 0.13, width].map(|factor| Some(Univariate::of_coefficients(&[factor])));
-        let surrogate = Surrogate { centre: 0.0, parts: parts.to_vec(), interactions: Interactions::none(3) };
-        let inputs = [two(), two(), Arc::new(Normal::new(0.0, 1.0).unwrap()) as Law];
-        let law = SurfaceLaw::of(&surrogate, &inputs, None, &LawOptions::default()).unwrap();
+        let law = four_clusters(width, Arc::new(Normal::new(0.0, 1.0).unwrap()));
         let clusters = [-2.58, -2.32, 2.32, 2.58];
         for p in [1.35e-3, 0.01, 0.05, 0.2, 0.3, 0.45f64] {
             let exact = clusters[(4.0 * p) as usize]
@@ -392,12 +396,8 @@ fn quantiles_of_a_law_without_ends_lie_in_their_cluster() {
 /// first and the second. The error of what is found covers both ends of the gap.
 #[test]
 fn error_of_a_quantile_on_a_gap_covers_the_gap() {
-    let two = || -> Law { Arc::new(TwoValues::new(-1.0, 1.0).unwrap()) };
     for width in [1e-5, 1e-3] {
-        let parts = [2.45, 0.13, width].map(|factor| Some(Univariate::of_coefficients(&[factor])));
-        let surrogate = Surrogate { centre: 0.0, parts: parts.to_vec(), interactions: Interactions::none(3) };
-        let inputs = [two(), two(), Arc::new(Normal::new(0.0, 1.0).unwrap()) as Law];
-        let law = SurfaceLaw::of(&surrogate, &inputs, None, &LawOptions::default()).unwrap();
+        let law = four_clusters(width, Arc::new(Normal::new(0.0, 1.0).unwrap()));
         for (p, ends) in [(0.5, [-2.32, 2.32]), (0.25, [-2.58, -2.32])] {
             for tail in [LawTail::Lower, LawTail::Upper] {
                 let sign = if tail == LawTail::Lower { 1.0 } else { -1.0 };
@@ -422,15 +422,12 @@ fn error_of_a_quantile_on_a_gap_covers_the_gap() {
 /// covers the closed form: the share of the third cluster beyond the limit, and the fourth.
 #[test]
 fn tails_at_the_edge_of_a_narrow_cluster_have_an_honest_error() {
-    let two = || -> Law { Arc::new(TwoValues::new(-1.0, 1.0).unwrap()) };
     for power in -9..=-2 {
         let width = 10f64.powi(power);
-        let parts = [2.45, 0.13, width].map(|factor| Some(Univariate::of_coefficients(&[factor])));
-        let surrogate = Surrogate { centre: 0.0, parts: parts.to_vec(), interactions: Interactions::none(3) };
         let normal = Arc::new(Normal::new(0.0, 1.0).unwrap()) as Law;
         let uniform = Arc::new(Uniform::new(-1.0, 1.0).unwrap()) as Law;
         for (last, is_normal) in [(normal, true), (uniform, false)] {
-            let law = SurfaceLaw::of(&surrogate, &[two(), two(), last], None, &LawOptions::default()).unwrap();
+            let law = four_clusters(width, last);
             for off in [-20.0, -5.0, -1.0, -0.3, 0.0, 0.5, 1.0, 3.0, 20.0, 100.0f64] {
                 let found = law.tail(2.32 + off * width, LawTail::Upper);
                 let beyond = |z: f64| match is_normal {
