@@ -1,4 +1,4 @@
-//! The table of constants ([docs/reference/tuning.md](../../docs/reference/tuning.md)) has every constant of the methods as it is.
+//! The table of constants ([tests/tuning/README.md](../tuning/README.md)) has every constant of the methods as it is.
 
 use sensitol_testing::repository;
 
@@ -34,7 +34,7 @@ fn kinds() -> (toml::Table, toml::Table) {
 
 #[test]
 fn every_constant_has_its_kind_and_its_row() {
-    let page = std::fs::read_to_string(repository("docs/reference/tuning.md")).unwrap();
+    let page = std::fs::read_to_string(repository("tests/tuning/README.md")).unwrap();
     let (kinds, constants_by_file) = kinds();
     let sections: Vec<&str> = page.split("\n## ").skip(1).collect();
     let section = |kind: &str| sections.iter().find_map(|section| section.strip_prefix(kind)?.strip_prefix('\n'));

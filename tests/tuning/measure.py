@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Which constant changes what: every numeric constant of the methods, their estimates and their verification, doubled and halved.
 
-    python3 tests/tuning/measure.py        # renews docs/reference/tuning.md: constants that are new or have another value
+    python3 tests/tuning/measure.py        # renews tests/tuning/README.md: constants that are new or have another value
     python3 tests/tuning/measure.py --all  # all of them anew; an hour of CPU time
     python3 tests/tuning/measure.py --write # what was measured before the measurement was ended
 
@@ -23,7 +23,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 KINDS = Path(__file__).with_name("kinds.toml")
-PAGE = ROOT / "docs" / "reference" / "tuning.md"
+PAGE = Path(__file__).with_name("README.md")
 BUILD = ROOT / "target" / "tuning"
 # By package: the engine, and the mathematics below it.
 PACKAGES = {"src": ["analysis", "estimate", "method", "simulation", "verification"], "crates/numeric/src": ["surrogate"]}
@@ -285,9 +285,9 @@ def written(rows, first, further):
     still = lambda row: all(cell in ("nothing", HALF) for cell in row[1:])
     text = f"""# Constants, and what they do
 
-Written by [tests/tuning/measure.py](../../tests/tuning/measure.py), which doubles and halves every numeric constant of
+Written by [measure.py](measure.py), which doubles and halves every numeric constant of
 {", ".join(f"`{folder}`" for folder in FOLDERS[:-1])} and `{FOLDERS[-1]}` and runs the {len(names)} functions that constants may be tuned
-on ([docs/accuracy.md](../accuracy.md)) of at most 20 dimensions, all but `saturating-3`, in four ways: `auto` of a cheap model, `full` with check points,
+on ([docs/accuracy.md](../../docs/accuracy.md)) of at most 20 dimensions, all but `saturating-3`, in four ways: `auto` of a cheap model, `full` with check points,
 `auto` without any verification at 1 % and at 0.1 %. The functions by which errors are judged are not among them.
 
 As they are: {len(first)} runs, {total} evaluations of models that cost something, {known} figures with an estimated error, {known - covered} of
@@ -296,8 +296,8 @@ the kinds {", ".join(f"`{kind}`" for kind in FURTHER)} changes nothing there, {l
 budget from which it may be sampled, of `full` without verification, and of functions of 21 to 60 dimensions. "Nothing" is
 said of guards against what these functions do not have (poles, overflow, correlated inputs), and of constants that a doubling leaves on the
 same side of everything; after "nothing in the first runs" the further runs are still to be made. "Fixed" sizes an array, or other constants are made of it. A row was measured when its constant last changed; `--all`
-measures all rows anew. [A test](../../tests/suite/tuning.rs) holds that every constant has its row and its kind, which
-[tests/tuning/kinds.toml](../../tests/tuning/kinds.toml) says.
+measures all rows anew. [A test](../house/tuning.rs) holds that every constant has its row and its kind, which
+[kinds.toml](kinds.toml) says.
 
 | kind | meaning | constants | change nothing |
 |---|---|--:|--:|

@@ -141,10 +141,6 @@ fn the_patterns_do_not_spread() {
 fn walk(folder: &Path, texts: &mut Vec<String>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path: PathBuf = entry.unwrap().path();
-        if path.ends_with("docs/reference/tuning.md") {
-            // The page repeats comments of `src`.
-            continue;
-        }
         if path.is_dir() {
             walk(&path, texts);
         } else if path.extension().is_some_and(|extension| extension == "rs" || extension == "md") {
