@@ -96,7 +96,7 @@ def test_every_tool_answers(folder):
     assert abs(sigma - 0.01 / 3 * 2**0.5) < 1e-12
     assert not sampled[0] and "2000" in sampled[1]
     assert not allocated[0] and "[dimensions]" in allocated[1]
-    assert "Cause" in explained[1] and "Try" in explained[1]
+    assert "formula" in explained[1] and "Look for a wrong name" in explained[1]
 
 
 def test_no_study_outside_the_folder(folder):
