@@ -8,9 +8,9 @@ use sensitol_study::Study;
 use sensitol_testing::{example_studies, repository};
 use serde_json::Value;
 
-/// Removes line ends and bars, which a cell of a table cannot have.
-fn cell(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
+/// Joins the lines of a text.
+fn line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 fn code(text: &str) -> String {
@@ -23,17 +23,18 @@ const SHOWN: &str = "examples/stacked-blocks/study.toml";
 /// `docs/reference/study-file.md`.
 pub fn study_file() -> String {
     let schema = sensitol_study::schema::schema();
-    let mut page = Keys { defs: &schema["$defs"], text: String::new(), done: Vec::new() };
+    let mut page = Keys { defs: &schema["$defs"], text: String::new(), done: Vec::new(), lines: BTreeMap::new() };
     Study::read(&repository(SHOWN)).unwrap();
     let shown = std::fs::read_to_string(repository(SHOWN)).unwrap();
     page.text = format!(
         "# Study files\n\n\
-         TOML, or JSON with the same keys. This page is made from the schema that `sensitol schema` prints; editors that know it complete\n\
-         keys and show these descriptions. A key that stands nowhere on this page is an error that names the nearest one that does.\n\n\
+         TOML, or JSON with the same keys. The page is made from the schema that `sensitol schema` prints. Editors that know the schema\n\
+         [complete keys and show these descriptions](../how-to/editors.md). A key that is not on this page is an error, which names the nearest key.\n\n\
+         A line has the key, its type, its default in parentheses, and its meaning.\n\n\
          [{SHOWN}](../../{SHOWN}):\n\n```toml\n{shown}```\n\n\
          ## The file\n\n"
     );
-    page.keys(&schema, "");
+    page.overview(&schema);
     for (name, section) in schema["properties"].as_object().unwrap() {
         if section["type"] == "string" {
             continue;
@@ -42,13 +43,13 @@ pub fn study_file() -> String {
         if let Some(of) = section.get("additionalProperties") {
             let kind = page.kind(of);
             let form = match kind.as_str() {
-                "table" => "`NAME = { .. }`, any name".to_owned(),
-                "[any number of: table]" => "`NAME = [ { .. }, .. ]`, any name".to_owned(),
-                _ => format!("`NAME = value`, any name; a value is: {kind}"),
+                "table" => "`NAME = { .. }`".to_owned(),
+                "list of table" => "`NAME = [ { .. }, .. ]`".to_owned(),
+                _ => format!("`NAME = value`; a value is {kind}"),
             };
-            write!(page.text, "{form}.\n\n").unwrap();
+            write!(page.text, "{form}. ").unwrap();
         } else if section["type"] == "array" {
-            write!(page.text, "`[[{name}]]`, as often as there are any.\n\n").unwrap();
+            write!(page.text, "`[[{name}]]`. ").unwrap();
         }
         page.text += &in_use(name);
         page.section(section, name);
@@ -89,6 +90,17 @@ struct Keys<'s> {
     text: String,
     /// Values that have been shown, with their headings.
     done: Vec<(&'s Value, String)>,
+    /// Lines of keys that have been shown, with their headings.
+    lines: BTreeMap<String, String>,
+}
+
+/// Returns the default of a key, or that it must be there.
+fn default(object: &Value, key: &str, value: &Value) -> Option<String> {
+    let required = object["required"].as_array().is_some_and(|keys| keys.iter().any(|one| one == key));
+    match value.get("default") {
+        Some(default) => Some(code(&default.to_string())),
+        None => required.then(|| "required".to_owned()),
+    }
 }
 
 impl<'s> Keys<'s> {
@@ -111,91 +123,131 @@ impl<'s> Keys<'s> {
         parts.chain(within).flat_map(|part| self.objects(part)).collect()
     }
 
+    /// Writes the keys of the file: values with their meaning, tables as links to their sections.
+    fn overview(&mut self, schema: &'s Value) {
+        let mut tables = Vec::new();
+        for (key, value) in schema["properties"].as_object().unwrap() {
+            if value["type"] == "string" {
+                let row = self.row(key, value, default(schema, key, value), None);
+                self.text += &row;
+            } else {
+                tables.push(format!("[`{key}`](#{key})"));
+            }
+        }
+        let required: Vec<String> = schema["required"].as_array().unwrap().iter().map(|key| code(key.as_str().unwrap())).collect();
+        writeln!(self.text, "- Tables: {}. Required: {}.\n", tables.join(", "), required.join(", ")).unwrap();
+    }
+
     /// Writes the keys below a value, then the tables below these.
     fn section(&mut self, value: &'s Value, path: &str) {
         let objects = self.objects(value);
         if objects.is_empty() {
             return;
         }
+        let mut below: Vec<(String, &Value)> = Vec::new();
+        for object in &objects {
+            for (key, value) in object["properties"].as_object().unwrap() {
+                if !self.objects(value).is_empty() && self.place(value).is_none() {
+                    let place = format!("{path}: {key}");
+                    self.done.push((value, place.clone()));
+                    below.push((place, value));
+                }
+            }
+        }
         let kinds: Vec<&Value> =
             objects.iter().copied().filter(|object| object["properties"]["kind"]["const"].is_string()).collect();
         if kinds.is_empty() {
             objects.iter().for_each(|object| self.keys(object, path));
         } else {
-            self.kinds(&kinds);
+            self.kinds(&kinds, path);
         }
-        let mut below: Vec<(String, &Value)> = Vec::new();
-        for object in objects {
-            for (key, value) in object["properties"].as_object().unwrap() {
-                let new = !self.objects(value).is_empty() && self.place(value).is_none();
-                if new && !below.iter().any(|(known, _)| known == key) {
-                    below.push((key.clone(), value));
-                }
-            }
-        }
-        for (key, value) in below {
-            let path = format!("{path}: {key}");
-            self.done.push((value, path.clone()));
-            let about = self.about(value);
-            write!(self.text, "### {path}\n\n{about}\n\n").unwrap();
+        for (path, value) in below {
+            write!(self.text, "### {path}\n\n").unwrap();
             self.section(value, &path);
         }
     }
 
     /// Returns the heading under which a value's keys are already shown, if its tables equal those of an earlier value.
     fn place(&self, value: &Value) -> Option<&str> {
-        let same = |one: &Value| {
-            // Keys may have different descriptions with the same content.
-            let bare = |value: &Value| {
-                let mut value = value.clone();
-                value.as_object_mut().unwrap().remove("description");
-                value
-            };
-            bare(one) == bare(value)
+        // Keys may have different descriptions and defaults with the same content.
+        let bare = |value: &Value| {
+            let mut value = value.clone();
+            let keys = value.as_object_mut().unwrap();
+            keys.remove("description");
+            keys.remove("default");
+            value
         };
-        self.done.iter().find(|(one, _)| same(one)).map(|(_, path)| path.as_str())
+        self.done.iter().find(|(one, _)| bare(one) == bare(value)).map(|(_, path)| path.as_str())
     }
 
-    /// Writes a table of keys.
+    /// Returns the line of a key: name, type, default, meaning. A link leads to the table that the value is.
+    fn row(&self, key: &str, value: &'s Value, default: Option<String>, table: Option<&str>) -> String {
+        let key = match table {
+            Some(heading) => format!("[`{key}`](#{})", anchor(heading)),
+            None => code(key),
+        };
+        let default = default.map_or(String::new(), |default| format!(" ({default})"));
+        format!("- {key}: {}{default}. {}\n", self.kind(value), line(&self.about(value)))
+    }
+
+    /// Writes the lines of keys. Those that equal lines of an earlier section are named only.
+    fn lines(&mut self, rows: Vec<(String, String)>, path: &str) {
+        let mut repeated: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for (key, row) in rows {
+            match self.lines.get(&row) {
+                Some(place) if place != path && row.split_whitespace().count() > 7 => {
+                    repeated.entry(place.clone()).or_default().push(code(&key));
+                }
+                _ => {
+                    self.text += &row;
+                    self.lines.entry(row).or_insert_with(|| path.to_owned());
+                }
+            }
+        }
+        for (place, keys) in repeated {
+            writeln!(self.text, "- As in [{place}](#{}): {}.", anchor(&place), keys.join(", ")).unwrap();
+        }
+        self.text.push('\n');
+    }
+
+    /// Writes the keys of a table.
     fn keys(&mut self, object: &'s Value, path: &str) {
         if let Some(one_of) = object["oneOf"].as_array() {
             let keys: Vec<String> = one_of.iter().map(|form| code(form["required"][0].as_str().unwrap())).collect();
             write!(self.text, "Exactly one of {} must be there.\n\n", keys.join(", ")).unwrap();
         }
-        self.text += "| key | value | default | meaning |\n|---|---|---|---|\n";
+        let mut rows = Vec::new();
         for (key, value) in object["properties"].as_object().unwrap() {
-            let required = object["required"].as_array().is_some_and(|keys| keys.iter().any(|one| one == key));
-            let default = match value.get("default") {
-                Some(default) => code(&default.to_string()),
-                None if required => "required".to_owned(),
-                None => String::new(),
-            };
-            let (kind, about) = (self.kind(value), self.about(value));
-            let key =
-                if path.is_empty() && value["type"] != "string" { format!("[`{key}`](#{key})") } else { code(key) };
-            writeln!(self.text, "| {key} | {} | {default} | {} |", cell(&kind), cell(&about)).unwrap();
+            let table = if self.objects(value).is_empty() { None } else { self.place(value) };
+            rows.push((key.clone(), self.row(key, value, default(object, key, value), table)));
         }
-        self.text.push('\n');
+        self.lines(rows, path);
     }
 
     /// Writes tables that differ by their kind: the keys of each kind, then the meaning of the keys.
-    fn kinds(&mut self, kinds: &[&'s Value]) {
-        self.text += "| kind | keys beside `kind` |\n|---|---|\n";
+    fn kinds(&mut self, kinds: &[&'s Value], path: &str) {
         let mut all: BTreeMap<&str, &Value> = BTreeMap::new();
+        let mut without = Vec::new();
+        self.text += "Keys beside `kind`:\n\n";
         for kind in kinds {
             let others = kind["properties"].as_object().unwrap().iter().filter(|(key, _)| *key != "kind");
             let keys: Vec<String> = others.clone().map(|(key, _)| code(key)).collect();
             all.extend(others.map(|(key, value)| (key.as_str(), value)));
-            let name = kind["properties"]["kind"]["const"].as_str().unwrap();
-            writeln!(self.text, "| `{name}` | {} |", keys.join(", ")).unwrap();
+            let name = code(kind["properties"]["kind"]["const"].as_str().unwrap());
+            if keys.is_empty() {
+                without.push(name);
+            } else {
+                writeln!(self.text, "- {name}: {}", keys.join(", ")).unwrap();
+            }
         }
-        self.text += "\n| key | value | default | meaning |\n|---|---|---|---|\n";
+        write!(self.text, "- none: {}\n\n", without.join(", ")).unwrap();
+        let mut rows = Vec::new();
         for (key, value) in all {
-            let default = value.get("default").map_or(String::new(), |default| code(&default.to_string()));
-            let (kind, about) = (self.kind(value), self.about(value));
-            writeln!(self.text, "| `{key}` | {} | {default} | {} |", cell(&kind), cell(&about)).unwrap();
+            let default = value.get("default").map(|default| code(&default.to_string()));
+            let table = if self.objects(value).is_empty() { None } else { self.place(value) };
+            rows.push((key.to_owned(), self.row(key, value, default, table)));
         }
-        self.text.push('\n');
+        self.lines(rows, path);
     }
 
     /// Returns the description of a value, or that of its type.
@@ -214,85 +266,127 @@ impl<'s> Keys<'s> {
                     kinds.push(kind);
                 }
             }
-            return kinds.join(", or ");
+            return kinds.join(" or ");
         }
         if let Some(words) = value["enum"].as_array() {
-            return words.iter().map(|word| code(&word.to_string())).collect::<Vec<_>>().join(", ");
+            if words.len() > MOST_WORDS {
+                let known = words.iter().any(|word| word == "truncated-normal");
+                return if known { "kind of [distribution](#dimensions-distribution)".to_owned() } else { listed(words) };
+            }
+            return listed(words);
         }
         match value["type"].as_str() {
-            Some("number") if value["minimum"] == 0 => "number, 0 or above".to_owned(),
+            Some("number") if value["minimum"] == 0 => "number ≥ 0".to_owned(),
             Some("number") => "number".to_owned(),
-            Some("integer") => "whole number".to_owned(),
-            Some("boolean") => "`true`, `false`".to_owned(),
-            Some("string") if value.get("pattern").is_some() => "percent such as `\"2 %\"`".to_owned(),
+            Some("integer") => "integer".to_owned(),
+            Some("boolean") => "`true|false`".to_owned(),
+            Some("string") if value.get("pattern").is_some() => "percent".to_owned(),
             Some("string") => "text".to_owned(),
             Some("array") => {
                 let of = value.get("items").or_else(|| value["prefixItems"].get(0)).unwrap();
                 let kind = self.kind(of);
                 match (value["minItems"].as_u64(), value["maxItems"].as_u64()) {
-                    (Some(least), Some(most)) if least == most => format!("[{least} of: {kind}]"),
-                    _ => format!("[any number of: {kind}]"),
+                    (Some(least), Some(most)) if least == most => format!("list of {least} ({kind})"),
+                    _ => format!("list of {kind}"),
                 }
             }
             Some("object") if value.get("properties").is_some() => "table".to_owned(),
-            Some("object") => format!("table of names, each with: {}", self.kind(&value["additionalProperties"])),
+            Some("object") => format!("names, each with {}", self.kind(&value["additionalProperties"])),
             _ => panic!("what is this: {value}"),
         }
     }
 }
 
-/// `docs/reference/commands.md`.
+/// Enumerations of more words are shown where their words are explained.
+const MOST_WORDS: usize = 12;
+
+/// Returns the words of an enumeration as one piece of code.
+fn listed(words: &[Value]) -> String {
+    code(&words.iter().map(|word| word.to_string()).collect::<Vec<_>>().join("|"))
+}
+
+/// Returns the anchor of a heading in the form of code hosts and mdBook.
+pub fn anchor(heading: &str) -> String {
+    let kept = heading.to_lowercase().replace(' ', "-");
+    kept.chars().filter(|letter| letter.is_alphanumeric() || "-_".contains(*letter)).collect()
+}
+
+/// `docs/reference/commands.md`: options of several commands once, then each command with its own.
 pub fn commands() -> String {
     let command = sensitol_cli::command();
     let mut page = String::from(
         "# Commands\n\n\
-         This page is made from what the program parses; `sensitol help COMMAND` prints the same. Results go to stdout, or to the file of\n\
-         `-o`; progress, warnings and errors to stderr.\n\n\
+         This page is made from the options that the program reads. `sensitol help COMMAND` prints the same. Results go to stdout or to the file\n\
+         of `-o`. Progress, warnings and errors go to stderr. Defaults are in parentheses.\n\n\
          | exit code | meaning |\n|--:|---|\n",
     );
     for (code, meaning) in sensitol_cli::exit_codes() {
         writeln!(page, "| {code} | {meaning} |").unwrap();
     }
-    page += "\nWith `--json` the report is printed with 1, 3 and 4 too.\n\n";
+    page += "\nWith `--json` the report is printed with 1, 3 and 4 too.\n\n## Every command\n\n";
     let mut values = BTreeMap::new();
-    page += "## Every command\n\n";
-    options(&mut page, command.get_arguments().filter(|one| !one.is_positional()), &mut values);
-    for subcommand in all(&command) {
+    for one in command.get_arguments().filter(|one| !one.is_positional()) {
+        page += &option(one, &mut values);
+    }
+    let subcommands = all(&command);
+    let of_commands: Vec<Vec<(String, String)>> = subcommands
+        .iter()
+        .map(|subcommand| own(subcommand).map(|one| (short(one), option(one, &mut values))).collect())
+        .collect();
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for (_, line) in of_commands.iter().flatten() {
+        *counts.entry(line).or_default() += 1;
+    }
+    let mut shared: Vec<&str> = counts.iter().filter(|(_, count)| **count > 1).map(|(line, _)| *line).collect();
+    shared.sort_by_key(|line| line.trim_start_matches(|sign: char| !sign.is_alphabetic()).to_lowercase());
+    write!(page, "\n## Options of several commands\n\n{}", shared.concat()).unwrap();
+    page += "\nIn every command: `STUDY` is the study, a .toml or .json file.\n\n";
+    for (subcommand, options) in subcommands.iter().zip(&of_commands) {
         let path = subcommand.get_bin_name().unwrap();
         let about = subcommand.get_long_about().or(subcommand.get_about()).unwrap().to_string();
         write!(page, "## {path}\n\n{}\n\n", paragraphs(&about)).unwrap();
         let usage = subcommand.clone().render_usage().to_string();
         let usage = usage.strip_prefix("Usage: ").unwrap();
-        write!(page, "```text\n{usage}\n```\n\n").unwrap();
-        for (positional, heading) in [(true, "argument"), (false, "")] {
-            let own = |one: &&Arg| one.is_positional() == positional && !one.is_global_set() && one.get_id() != "help";
-            let arguments: Vec<&Arg> = subcommand.get_arguments().filter(own).collect();
-            if positional && !arguments.is_empty() {
-                write!(page, "| {heading} | meaning |\n|---|---|\n").unwrap();
-                for one in arguments {
-                    let name = one.get_value_names().unwrap()[0].as_str();
-                    let more = if one.get_num_args().is_some_and(|count| count.max_values() > 1) { " .." } else { "" };
-                    let optional = if one.is_required_set() { "" } else { ", or nothing" };
-                    writeln!(page, "| `{name}`{more}{optional} | {} |", cell(&help(one).0)).unwrap();
-                }
-                page.push('\n');
-            } else if !positional && !arguments.is_empty() {
-                options(&mut page, arguments.into_iter(), &mut values);
+        write!(page, "```sh\n{usage}\n\n{}\n```\n\n", examples(subcommand).join("\n")).unwrap();
+        for one in subcommand.get_arguments().filter(|one| one.is_positional()) {
+            let about = line(&help(one).0);
+            if !about.starts_with("The study, a .toml") {
+                writeln!(page, "- `{}`: {about}", one.get_value_names().unwrap()[0]).unwrap();
             }
         }
-        write!(page, "```sh\n{}\n```\n\n", examples(&subcommand).join("\n")).unwrap();
+        for (_, line) in options.iter().filter(|(_, line)| counts[line.as_str()] == 1) {
+            page += line;
+        }
+        let several: Vec<&str> =
+            options.iter().filter(|(_, line)| counts[line.as_str()] > 1).map(|(name, _)| name.as_str()).collect();
+        if !several.is_empty() {
+            writeln!(page, "- [Options of several commands](#options-of-several-commands): {}", several.join(", ")).unwrap();
+        }
+        if !page.ends_with("\n\n") {
+            page.push('\n');
+        }
     }
     page += "## Words\n\nThe meaning of the words that stand for an option.\n";
     for (option, words) in values {
-        write!(page, "\n### {option}\n\n| word | meaning |\n|---|---|\n").unwrap();
-        words.iter().for_each(|(word, help)| writeln!(page, "| `{word}` | {} |", cell(help)).unwrap());
+        write!(page, "\n### {option}\n\n").unwrap();
+        words.iter().for_each(|(word, help)| writeln!(page, "- `{word}`: {}", line(help)).unwrap());
     }
     page
 }
 
+/// Returns the options that a command has beside those of all commands.
+fn own(command: &Command) -> impl Iterator<Item = &Arg> {
+    command.get_arguments().filter(|one| !one.is_positional() && !one.is_global_set() && one.get_id() != "help")
+}
+
+/// Returns the long name of an option, as it is typed.
+fn short(one: &Arg) -> String {
+    code(&format!("--{}", one.get_long().unwrap()))
+}
+
 /// Joins the lines of each paragraph.
 fn paragraphs(text: &str) -> String {
-    text.split("\n\n").map(cell).collect::<Vec<_>>().join("\n\n")
+    text.split("\n\n").map(line).collect::<Vec<_>>().join("\n\n")
 }
 
 /// Returns every command that does something, in the order of the help.
@@ -329,40 +423,30 @@ fn help(one: &Arg) -> (String, String) {
     }
 }
 
-/// Writes a table of options. Words with a meaning of their own are explained at the end of the page.
-fn options<'a>(
-    page: &mut String,
-    arguments: impl Iterator<Item = &'a Arg>,
-    values: &mut BTreeMap<String, Vec<(String, String)>>,
-) {
-    *page += "| option | default | meaning |\n|---|---|---|\n";
-    for one in arguments {
-        let mut names: Vec<String> = one.get_short().map(|short| format!("-{short}")).into_iter().collect();
-        names.extend(one.get_long().map(|long| format!("--{long}")));
-        let value = match one.get_value_names() {
-            Some([name]) if one.get_action().takes_values() => format!(" {name}"),
-            _ => String::new(),
-        };
-        let (mut about, default) = help(one);
-        let words: Vec<(String, String)> = one
-            .get_possible_values()
-            .iter()
-            .filter(|_| one.get_action().takes_values())
-            .map(|word| (word.get_name().to_owned(), word.get_help().map(|help| help.to_string()).unwrap_or_default()))
-            .collect();
-        if !words.is_empty() {
-            let listed: Vec<String> = words.iter().map(|(word, _)| code(word)).collect();
-            let long = one.get_long().unwrap();
-            let explained = words.iter().any(|(_, help)| !help.is_empty());
-            let lead = if explained { format!("[Words](#--{long})") } else { "Words".to_owned() };
-            about += &format!(". {lead}: {}", listed.join(", "));
-            if explained {
-                values.insert(format!("--{long}"), words);
-            }
-        }
-        let names = names.iter().map(|name| code(name)).collect::<Vec<_>>().join(", ");
-        let value = if value.is_empty() { value } else { format!(" {}", code(value.trim())) };
-        writeln!(page, "| {names}{value} | {} | {} |", cell(&default), cell(&about)).unwrap();
+/// Returns the line of an option. Words with a meaning of their own are explained at the end of the page.
+fn option(one: &Arg, values: &mut BTreeMap<String, Vec<(String, String)>>) -> String {
+    let mut names: Vec<String> = one.get_short().map(|short| format!("-{short}")).into_iter().collect();
+    names.extend(one.get_long().map(|long| format!("--{long}")));
+    let value = match one.get_value_names() {
+        Some([name]) if one.get_action().takes_values() => format!(" {name}"),
+        _ => String::new(),
+    };
+    let (about, default) = help(one);
+    let mut about = line(&about);
+    let words: Vec<(String, String)> = one
+        .get_possible_values()
+        .iter()
+        .filter(|_| one.get_action().takes_values())
+        .map(|word| (word.get_name().to_owned(), word.get_help().map(|help| help.to_string()).unwrap_or_default()))
+        .collect();
+    if words.iter().any(|(_, help)| !help.is_empty()) {
+        let long = one.get_long().unwrap();
+        write!(about, ". [Words](#--{long})").unwrap();
+        values.insert(format!("--{long}"), words);
+    } else if !words.is_empty() {
+        let listed: Vec<&str> = words.iter().map(|(word, _)| word.as_str()).collect();
+        write!(about, ": {}", code(&listed.join("|"))).unwrap();
     }
-    page.push('\n');
+    let default = if default.is_empty() { default } else { format!(" ({})", line(&default)) };
+    format!("- {}{default}: {about}\n", code(&(names.join(", ") + &value)))
 }
