@@ -6,9 +6,12 @@ use std::fmt::Write;
 use serde_json::Value;
 
 use super::command::sensitol;
+use super::reference::anchor;
 
 const INTRODUCTION: &str = "# JSON reports\n\n\
-    `--json` prints one object, or a list where a command says so. This page is made from the JSON Schema that `sensitol schema --report` prints.\n\n\
+    `--json` prints one object, or a list where a command says so. This page is made from the JSON Schema that `sensitol schema --report` prints,\n\
+    which has the whole description of each key.\n\n\
+    - A line has the key, its type and its meaning. `?` after a type means that the value may be `null`.\n\
     - Numbers have all their digits. An unknown value is `null`, never 0; no key is left out.\n\
     - `schema` is the version of the shape. Keys are added without a new version; a key that changes its meaning or is removed raises it.\n\
     - Several studies in one call give a list: each report has the key `study`, or it is `{ \"study\": .., \"error\": .., \"errors\": [{ .. }] }`.\n\
@@ -19,7 +22,7 @@ const INTRODUCTION: &str = "# JSON reports\n\n\
 pub fn json_report() -> String {
     let output = sensitol(&["schema", "--report"]).output().unwrap();
     let schema: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let mut page = Page { defs: &schema["$defs"], text: INTRODUCTION.to_owned(), done: Vec::new() };
+    let mut page = Page { defs: &schema["$defs"], text: INTRODUCTION.to_owned(), done: Vec::new(), lines: BTreeMap::new() };
     for command in schema["anyOf"].as_array().unwrap() {
         let name = name(command).unwrap();
         // The list of several reports contains no new keys.
@@ -47,7 +50,12 @@ struct Page<'s> {
     text: String,
     /// Tables of keys that have been shown, with their headings.
     done: Vec<(Vec<&'s Value>, String)>,
+    /// Lines of keys that have been shown, with their headings.
+    lines: BTreeMap<String, String>,
 }
+
+/// Lines of at most so many words are written again; longer ones are named with the place of the first.
+const SHORT_LINE: usize = 3;
 
 impl<'s> Page<'s> {
     fn resolved(&self, mut value: &'s Value) -> &'s Value {
@@ -85,8 +93,8 @@ impl<'s> Page<'s> {
                 keys.entry(key).or_default().push(value);
             }
         }
-        self.text += "| key | value | meaning |\n|---|---|---|\n";
         let mut below = Vec::new();
+        let mut repeated: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for (key, values) in keys {
             let mut kind = self.kind(&values);
             let objects: Vec<&'s Value> = values.iter().copied().flat_map(|value| self.objects(value)).collect();
@@ -100,8 +108,19 @@ impl<'s> Page<'s> {
                 });
                 kind = kind.replacen("object", &format!("[object](#{})", anchor(&heading)), 1);
             }
-            let about = self.about(values[0]);
-            writeln!(self.text, "| `{key}` | {kind} | {about} |").unwrap();
+            let line = format!("- `{key}`: {kind}. {}", self.about(values[0])).trim_end_matches(" .").to_owned();
+            match self.lines.get(&line) {
+                Some(place) if place != path && line.split_whitespace().count() > SHORT_LINE => {
+                    repeated.entry(place.clone()).or_default().push(format!("`{key}`"));
+                }
+                _ => {
+                    writeln!(self.text, "{}", line.trim_end()).unwrap();
+                    self.lines.entry(line).or_insert_with(|| path.to_owned());
+                }
+            }
+        }
+        for (place, keys) in repeated {
+            writeln!(self.text, "- As in [{place}](#{}): {}.", anchor(&place), keys.join(", ")).unwrap();
         }
         self.text.push('\n');
         for (heading, objects) in below {
@@ -110,12 +129,16 @@ impl<'s> Page<'s> {
         }
     }
 
-    /// Returns the first paragraph of a description, with JSON words.
+    /// Returns the first sentence of a description, with JSON words.
     fn about(&self, value: &'s Value) -> String {
         let text = value["description"].as_str().or_else(|| self.resolved(value)["description"].as_str());
         let text = text.unwrap_or_default().split("\n\n").next().unwrap();
         let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        without_links(&words).replace("None", "null").replace('|', "\\|")
+        let words = without_links(&words).replace("None", "null");
+        let first = words.split_once(". ").map_or(&words[..], |(first, _)| first);
+        // The type says that the value may be null.
+        let first = first.split_once("; null").map_or(first, |(first, _)| first);
+        format!("{}.", first.trim_end_matches('.'))
     }
 
     /// Returns the types that one of these values may have.
@@ -128,15 +151,20 @@ impl<'s> Page<'s> {
                 }
             }
         }
-        kinds.join(" or ")
+        let (words, others): (Vec<String>, Vec<String>) = kinds.into_iter().partition(|kind| kind.starts_with('"'));
+        let (nulls, mut types): (Vec<String>, Vec<String>) = others.into_iter().partition(|kind| kind == "null");
+        if !words.is_empty() {
+            types.push(format!("`{}`", words.join("|")));
+        }
+        types.join(" or ") + if nulls.is_empty() { "" } else { "?" }
     }
 
     fn kinds(&self, form: &'s Value) -> Vec<String> {
         if let Some(word) = form.get("const") {
-            return vec![format!("`{word}`")];
+            return vec![word.to_string()];
         }
         if let Some(words) = form["enum"].as_array() {
-            return words.iter().map(|word| format!("`{word}`")).collect();
+            return words.iter().map(Value::to_string).collect();
         }
         if form.get("properties").is_some() {
             return vec!["object".to_owned()];
@@ -152,19 +180,12 @@ impl<'s> Page<'s> {
                 format!("list of {}", self.kind(&[of]))
             }
             "object" => format!("names, each with {}", self.kind(&[&form["additionalProperties"]])),
-            "integer" => "whole number".to_owned(),
-            "boolean" => "true or false".to_owned(),
+            "boolean" => "`true|false`".to_owned(),
             "string" => "text".to_owned(),
             other => other.to_owned(),
         };
         types.into_iter().map(named).collect()
     }
-}
-
-/// Returns the anchor of a heading in the form of code hosts and mdBook.
-fn anchor(heading: &str) -> String {
-    let kept = heading.to_lowercase().replace(' ', "-");
-    kept.chars().filter(|letter| letter.is_alphanumeric() || "-_".contains(*letter)).collect()
 }
 
 /// Replaces links of rustdoc, which have no target here, by their text.
