@@ -11,7 +11,7 @@ use sensitol_study::Study;
 
 use super::coverage::{COLUMNS, checked, covered};
 use super::external_models;
-use sensitol_testing::{data, repository, says};
+use sensitol_testing::{data, generated, repository, says};
 
 /// Wanted accuracies of sigma for `auto`.
 const ACCURACIES: [f64; 3] = [0.05, 0.01, 0.001];
@@ -210,33 +210,55 @@ fn auto_is_quick_with_what_is_linear_and_what_is_sparse() {
     }
 }
 
-/// Compares `docs/accuracy.md` with the measured numbers, to the last character.
+/// Compares `docs/accuracy.md` and the table of every function with the measured numbers, to the last character.
 #[test]
-fn the_document_shows_what_was_measured() {
-    let path = repository("docs/accuracy.md");
-    let text = document();
-    if std::env::var_os("SENSITOL_UPDATE_DOCS").is_some() {
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, text).unwrap();
-        return;
+fn the_documents_show_what_was_measured() {
+    for (page, text) in [("docs/accuracy.md", summary_page()), ("tests/accuracy/README.md", every_function())] {
+        let path = repository(page);
+        if std::env::var_os("SENSITOL_UPDATE_DOCS").is_some() {
+            std::fs::write(path, text).unwrap();
+            continue;
+        }
+        assert_eq!(std::fs::read_to_string(path).unwrap(), text, "{page}: SENSITOL_UPDATE_DOCS=1 writes it anew");
     }
-    assert_eq!(std::fs::read_to_string(path).unwrap(), text, "SENSITOL_UPDATE_DOCS=1 writes it anew");
 }
 
-fn document() -> String {
-    let references = data("accuracy.json");
+/// Compares the table of coverage in `docs/validation.md` with the measured numbers.
+#[test]
+fn the_validation_page_shows_the_coverage() {
+    let mut text = String::from("| errors within three estimates | covered |\n|---|--:|\n");
+    let (held, all) = count(rows().iter().flat_map(auto), |ran| ran.covered() == Some(true));
+    writeln!(text, "| sigma by `auto`, {} functions at three accuracies | {held} of {all} |", rows().len()).unwrap();
+    for (figure, name) in COLUMNS.iter().enumerate() {
+        let (held, all, _) = covered(checked().iter().filter(|case| case.figure == figure));
+        writeln!(text, "| {name} by every method, costly models at check points | {held} of {all} |").unwrap();
+    }
+    text += &external_models::coverage();
+    generated("docs/validation.md", "coverage", &text);
+}
+
+fn summary_page() -> String {
     let mut text = String::from(
-        "# What every method costs, and how far it is off\n\n\
-         Written by the tests ([tests/accuracy/accuracy.rs](../tests/accuracy/accuracy.rs)) from the studies in\n\
-         [tests/data/accuracy](../tests/data/accuracy); `SENSITOL_UPDATE_DOCS=1 cargo test --test accuracy accuracy` writes it anew. The\n\
-         references come from quadrature, closed forms and exact moments, by another program\n\
-         ([accuracy.py](../tests/data/generators/accuracy.py)), and are known to 1e-7 of sigma or better.\n\n\
-         Constants may be tuned on these functions. What is tuned on them they do not test: the functions by which errors are judged are\n\
-         those of [trust.jsonl](../tests/data/trust.jsonl), and nothing is to be tuned on these.\n\n",
+        "# Cost and accuracy of every method\n\n\
+         [Tests](../tests/accuracy/README.md) measure these tables, and list every function with its evaluations, error and source. References come\n\
+         from quadrature, closed forms and exact moments by [another program](../tests/data/generators/accuracy.py), to 1e-7 of sigma.\n\n\
+         Constants of the methods may be chosen on these functions. Errors are judged on other functions\n\
+         ([trust.jsonl](../tests/data/trust.jsonl)), on which no constant is chosen.\n\n",
     );
     summary(&mut text);
-    text += "\n## Every function\n\nEvaluations, and the relative error of sigma in brackets. A star: the surrogate was not trusted, and \
-             the model was\nsampled with it as control variate. Functions with a kink are in italics.\n\n| function | N |";
+    text
+}
+
+/// Returns the table of evaluations and errors by function and method, with the sources of the functions.
+fn every_function() -> String {
+    let references = data("accuracy.json");
+    let mut text = String::from(
+        "# Accuracy by function\n\n\
+         [accuracy.rs](accuracy.rs) writes these tables and [docs/accuracy.md](../../docs/accuracy.md) from the studies in\n\
+         [tests/data/accuracy](../data/accuracy): `SENSITOL_UPDATE_DOCS=1 cargo test --test accuracy accuracy`.\n\n\
+         Evaluations, and the relative error of sigma in brackets. A star: the surrogate was not trusted, and the model was\n\
+         sampled with it as control variate. Functions with a kink are in italics.\n\n| function | N |",
+    );
     let contenders = contenders();
     contenders.iter().for_each(|(name, _)| write!(text, " {name} |").unwrap());
     text += "\n|---|--:|";
@@ -251,7 +273,7 @@ fn document() -> String {
         }
         text.push('\n');
     }
-    text += "\n## Where the functions come from\n\n| function | source | reference |\n|---|---|---|\n";
+    text += "\n## Sources\n\n| function | source | reference |\n|---|---|---|\n";
     for (name, truth) in references.as_object().unwrap() {
         let word = |key: &str| truth[key].as_str().unwrap();
         writeln!(text, "| {name} | {} | {} |", word("source"), word("reference")).unwrap();
@@ -263,7 +285,7 @@ fn summary(text: &mut String) {
     let share = |(held, all): (usize, usize)| format!("{held} of {all} ({:.1} %)", 100.0 * held as f64 / all as f64);
     let kinked = rows().len() - smooth().count();
     writeln!(text, "{} functions, {kinked} of them with a kink, of 1 to 200 dimensions.\n", rows().len()).unwrap();
-    *text += "| what was wanted of `auto` | reached |\n|---|--:|\n";
+    *text += "| required of `auto` | reached |\n|---|--:|\n";
     for (index, accuracy) in ACCURACIES.into_iter().enumerate() {
         let kept = count(smooth().map(|row| &auto(row)[index]), |ran| ran.within(accuracy));
         writeln!(text, "| sigma of smooth functions to {} % | {} |", 100.0 * accuracy, share(kept)).unwrap();
@@ -280,7 +302,7 @@ fn summary(text: &mut String) {
     });
     writeln!(text, "| at most 1.3 (N² + 3N + 1) + 16 evaluations, smooth functions | {} |", share(within)).unwrap();
     let sampled = count(smooth().flat_map(auto), |ran| ran.sampled);
-    writeln!(text, "| smooth functions of which the model had to be sampled | {} |", share(sampled)).unwrap();
+    writeln!(text, "| smooth functions whose model was sampled | {} |", share(sampled)).unwrap();
     figures(text);
     *text += "\n| method | median error, smooth | largest | within 3 estimates, where there is one | no estimate |\n|---|--:|--:|--:|--:|\n";
     for (index, (name, _)) in contenders().iter().enumerate() {
@@ -293,9 +315,8 @@ fn summary(text: &mut String) {
 
 /// Writes the table of all figures: of these functions without verification, and of those of `trust.jsonl` at check points.
 fn figures(text: &mut String) {
-    *text += "\n## All five figures\n\nThe median error of each figure where functions are smooth, mean and sigma in sigmas, without any \
-              verification; in brackets how many\nerrors are within three estimates, kinks included. A yield has no reference here; it has one \
-              in the next table.\n\n| method | mean | sigma | skewness | kurtosis |\n|---|--:|--:|--:|--:|\n";
+    *text += "\n## All figures\n\nMedian error of each figure on smooth functions without verification, mean and sigma in sigmas. In brackets: errors within \
+              three\nestimates, kinks included.\n\n| method | mean | sigma | skewness | kurtosis |\n|---|--:|--:|--:|--:|\n";
     for (index, (name, _)) in contenders().iter().enumerate() {
         write!(text, "| {name} |").unwrap();
         for figure in 0..4 {
@@ -312,12 +333,10 @@ fn figures(text: &mut String) {
         }
         text.push('\n');
     }
-    *text += "\nThe next table is of the functions of `trust.jsonl` as models that cost something: estimates are those of their check \
-              points. It tells how\nmany errors are within three estimates, and in brackets how many times the error its estimate is, in the \
-              median of those that can be told\nfrom the reference's own error. The estimates are some times as large as the errors: that is \
-              the price of few points, of which an estimate\nhas to hold for the unlucky draw too. A cheap model is sampled instead; there the \
-              estimate is the distance from the sample and its standard\nerror, and next to the error. For methods that\nintegrate, the surface through their points is judged.\n\n| method | mean | sigma | skewness | \
-              kurtosis | yield |\n|---|--:|--:|--:|--:|--:|\n";
+    *text += "\n## Error estimates\n\nThe functions of `trust.jsonl` as costly models, verified at check points: errors within three estimates, and in brackets the \
+              median of\nestimate over error. Estimates exceed errors because few points must cover the unlucky draw too. A cheap model is sampled \
+              instead, and\nits estimates are standard errors. For methods that integrate, the surface through their points is judged.\n\n\
+              | method | mean | sigma | skewness | kurtosis | yield |\n|---|--:|--:|--:|--:|--:|\n";
     for method in Method::ALL {
         write!(text, "| `{}` |", method.name()).unwrap();
         for figure in 0..COLUMNS.len() {
@@ -330,10 +349,9 @@ fn figures(text: &mut String) {
         }
         text.push('\n');
     }
-    *text += "\nThe last one is of external models with effects far from the means: contacts, steps and second states that 0.01 % to 5 % of \
-              the assemblies\nmeet, and smooth models beside them. The functions that judge are apart from those on which constants were \
-              chosen. A verdict is wrong if a\ntarget is called met of which the model has ten times the rejects.\n\n| method | within 3 \
-              estimates, functions that judge | functions of the constants | wrong verdicts |\n|---|--:|--:|--:|\n";
+    *text += "\nExternal models with contacts, steps and second states that 0.01 % to 5 % of the assemblies meet, and smooth models. A verdict is \
+              wrong if a\ntarget is called met although the model has ten times the rejects.\n\n\
+              | method | within 3 estimates, functions that judge | functions for constants | wrong verdicts |\n|---|--:|--:|--:|\n";
     *text += &external_models::table();
     *text += "\n## Sigma\n";
 }

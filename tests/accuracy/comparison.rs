@@ -69,48 +69,66 @@ fn printed(problem: &Problem) -> (u64, [f64; 4]) {
     (found.run.evaluations, [mean, sigma, skewness, kurtosis])
 }
 
-fn table(problem: &Problem, loops: Option<&Problem>, reference: [f64; 4]) -> String {
-    let mut table = String::from(
-        "| in the paper | ours | evaluations | mean | sigma | skewness | kurtosis | error of mean | of sigma | of skewness | of kurtosis |\n\
-         |---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
-    );
-    let (linear, _) = analysed(problem, &Options::from(Method::Rss).with_verify(0)).unwrap();
-    let varying = (linear - 1) / 2;
-    for (name, key, ours) in methods() {
+/// Characteristic of the three examples, with its reference.
+struct Case {
+    title: &'static str,
+    problem: Problem,
+    loops: Option<Problem>,
+    reference: [f64; 4],
+}
+
+impl Case {
+    /// Returns the reference: mean and sigma to a hundred thousandth of sigma, skewness and kurtosis.
+    fn shown(&self) -> String {
+        let sigma = self.reference[1];
+        let scales = [1e-4 * sigma, 1e-4 * sigma, 1e-4, 1e-4];
+        let figures: Vec<String> =
+            (0..4).map(|k| figure(self.reference[k], scales[k], 9)).collect();
+        figures.join(" ")
+    }
+
+    /// Returns the evaluations of a method, and its errors of mean, sigma, skewness and kurtosis.
+    fn cell(&self, ours: &Ours) -> String {
         let found = match ours {
-            Ours::Method(options) => analysed(problem, &options.with_verify(0)),
-            Ours::Loops => match loops {
+            Ours::Method(options) => analysed(&self.problem, &options.clone().with_verify(0)),
+            Ours::Loops => match &self.loops {
                 Some(loops) => {
                     let exact = Options::from(Method::Rss).with_derivatives(DerivativeSource::Exact);
                     analysed(loops, &exact.with_verify(0))
                 }
-                None => continue,
+                None => return "-".to_owned(),
             },
             Ours::Points(sampler, samples) => {
-                let options = SimulationOptions::default().with_sampler(sampler).with_samples(samples);
-                Some((samples, sampled(problem, &options)))
+                let options = SimulationOptions::default().with_sampler(*sampler).with_samples(*samples);
+                Some((*samples, sampled(&self.problem, &options)))
             }
-            Ours::Printed => Some(printed(problem)),
+            Ours::Printed => Some(printed(&self.problem)),
         };
         let Some((evaluations, found)) = found else {
-            writeln!(table, "| {name} | {key} | 3^{varying} | - | - | - | - | - | - | - | - |").unwrap();
-            continue;
+            let (linear, _) = analysed(&self.problem, &Options::from(Method::Rss).with_verify(0)).unwrap();
+            return format!("3^{}", (linear - 1) / 2);
         };
-        let [mean, sigma, skewness, kurtosis] = found;
         let errors = [
-            (mean - reference[0]) / reference[1],
-            sigma / reference[1] - 1.0,
-            skewness - reference[2],
-            kurtosis - reference[3],
+            (found[0] - self.reference[0]) / self.reference[1],
+            found[1] / self.reference[1] - 1.0,
+            found[2] - self.reference[2],
+            found[3] - self.reference[3],
         ];
-        let most = (5.0 - reference[1].log10().floor()) as usize;
-        let scales = [(reference[1], most), (reference[1], most), (1.0, 5), (1.0, 5)];
-        let figures: Vec<String> =
-            (0..4).map(|k| figure(found[k], (errors[k] * scales[k].0).abs(), scales[k].1)).collect();
         let errors =
             errors.map(|error| if error.abs() < 1e-8 { "<1e-8".to_owned() } else { format!("{:.0e}", error.abs()) });
-        writeln!(table, "| {name} | {key} | {evaluations} | {} | {} |", figures.join(" | "), errors.join(" | "))
-            .unwrap();
+        format!("{evaluations}: {}", errors.join(" "))
+    }
+}
+
+/// Returns a row for each method, and a column for each characteristic.
+fn table(cases: &[Case]) -> String {
+    let titles: Vec<&str> = cases.iter().map(|case| case.title).collect();
+    let references: Vec<String> = cases.iter().map(Case::shown).collect();
+    let mut table = format!("| in the paper | ours | {} |\n|---|---|{}\n", titles.join(" | "), "---|".repeat(cases.len()));
+    writeln!(table, "| reference | | {} |", references.join(" | ")).unwrap();
+    for (name, key, ours) in methods() {
+        let cells: Vec<String> = cases.iter().map(|case| case.cell(&ours)).collect();
+        writeln!(table, "| {name} | {key} | {} |", cells.join(" | ")).unwrap();
     }
     table
 }
@@ -135,22 +153,26 @@ fn reference(case: &str) -> [f64; 4] {
 
 #[test]
 fn the_comparison_of_methods_is_measured() {
-    let blocks = problem("stacked-blocks/study.toml", "gap");
-    let loops = problem("stacked-blocks-loops/study.toml", "gap");
-    generated(PAGE, "blocks", &table(&blocks, Some(&loops), reference("stacked_blocks")));
-    for (name, output, case) in
-        [("stroke", "stroke", "quick_return_stroke"), ("ratio", "ratio", "quick_return_time_ratio")]
+    let mut cases = vec![Case {
+        title: "blocks, gap",
+        problem: problem("stacked-blocks/study.toml", "gap"),
+        loops: Some(problem("stacked-blocks-loops/study.toml", "gap")),
+        reference: reference("stacked_blocks"),
+    }];
+    for (title, output, case) in
+        [("return, stroke", "stroke", "quick_return_stroke"), ("return, ratio", "ratio", "quick_return_time_ratio")]
     {
         let problem = problem("quick-return/study.toml", output);
-        generated(PAGE, name, &table(&problem, None, reference(case)));
+        cases.push(Case { title, problem, loops: None, reference: reference(case) });
     }
-    for output in ["gap", "flush1", "flush2"] {
+    for (title, output) in [("gun, gap", "gap"), ("gun, flush 1", "flush1"), ("gun, flush 2", "flush2")] {
         let problem = problem("spot-weld/study.toml", output);
         // The reference is the model at 100 000 points, with the surface of `full` as control variate.
         let control = SimulationOptions::default().with_samples(100_000).with_control(Method::Full.into());
         let truth = sampled(&problem, &control);
-        generated(PAGE, &format!("gun-{output}"), &table(&problem, None, truth));
+        cases.push(Case { title, problem, loops: None, reference: truth });
     }
+    generated(PAGE, "methods", &table(&cases));
 }
 
 /// Independent code gives the same figures: with derivatives at the point to 1e-7, with nodes at sqrt 3 sigma and factorials to 1e-8.

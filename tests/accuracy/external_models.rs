@@ -207,6 +207,19 @@ pub(super) fn table() -> String {
     text
 }
 
+/// Rows of the table of coverage in `docs/validation.md`: the functions that judge, and wrong verdicts.
+pub(super) fn coverage() -> String {
+    let judges: Vec<&Compared> = compared().iter().filter(|of| of.judges).collect();
+    let held = judges.iter().filter(|of| of.covered()).count();
+    let verdicts = CASES.len() * METHODS.len();
+    format!(
+        "| external models with contacts, steps and second states | {held} of {} |\n\
+         | of these, verdicts that are right | {} of {verdicts} |\n",
+        judges.len(),
+        verdicts - wrong_verdicts().len()
+    )
+}
+
 /// A region without a value that lies all around the means in many dimensions holds half of the assemblies, and no point along a single
 /// dimension. The bound of its share comes from the random points.
 #[test]

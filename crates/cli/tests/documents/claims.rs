@@ -1,4 +1,4 @@
-//! Every claim of `docs/published-cases.md` that can be checked has a command: it is run, the figure is taken from its report,
+//! Every claim of `docs/validation.md` that can be checked has a command: it is run, the figure is taken from its report,
 //! what the verdict says of the figure is tested, and the tables are written from that.
 //!
 //! `tests/data/published-claims.toml` has the claims. `at` names places in a report, `with` formulas of these, `holds` conditions
@@ -16,9 +16,11 @@ use toml::Table;
 use super::command::sensitol;
 use sensitol_testing::{generated, repository};
 
-const PAGE: &str = "docs/published-cases.md";
+const PAGE: &str = "docs/validation.md";
+/// Page of the charts, each with its command.
+const CHARTS: &str = "docs/published-cases.md";
 /// Allowed beginnings of a verdict, which the page explains.
-const VERDICTS: [&str; 6] = ["reproduced", "explained", "refuted", "not recoverable", "misprint", "ours"];
+const VERDICTS: [&str; 6] = ["reproduced", "explained", "refuted", "misprint", "not recoverable", "ours"];
 
 #[test]
 fn every_published_claim_is_checked_by_its_command() {
@@ -33,6 +35,8 @@ fn every_published_claim_is_checked_by_its_command() {
     let commands: Vec<&str> = commands.into_iter().collect();
     let reports: BTreeMap<&str, Value> = commands.par_iter().map(|&command| (command, report(command))).collect();
     let mut tables: BTreeMap<&str, String> = BTreeMap::new();
+    // The last command of each table, which the row below does not repeat.
+    let mut last: BTreeMap<&str, &str> = BTreeMap::new();
     let mut wrong = Vec::new();
     for claim in &claims {
         let name = claim.text("claim").unwrap();
@@ -50,13 +54,49 @@ fn every_published_claim_is_checked_by_its_command() {
             .entry(claim.text("table").unwrap())
             .or_insert_with(|| "| claim | printed | ours | verdict | command |\n|---|--:|--:|---|---|\n".to_owned());
         let [ours, verdict] = ["ours", "verdict"].map(|key| filled(claim.text(key).unwrap_or("-"), &values));
-        let run = claim.text("run").map_or("-".to_owned(), |run| format!("`sensitol {run}`"));
+        let run = match claim.text("run") {
+            Some(run) if last.get(claim.text("table").unwrap()) == Some(&run) => "as above".to_owned(),
+            Some(run) => format!("`sensitol {run}`"),
+            None => "-".to_owned(),
+        };
+        if let Some(run) = claim.text("run") {
+            last.insert(claim.text("table").unwrap(), run);
+        }
         writeln!(table, "| {name} | {} | {ours} | {verdict} | {run} |", claim.text("printed").unwrap_or("-")).unwrap();
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     for (name, table) in tables {
         generated(PAGE, name, &table);
     }
+    generated(PAGE, "overview", &overview(&claims));
+}
+
+/// Returns the number of claims by source and verdict. Sources stand in the order of the page, under their headings.
+fn overview(claims: &[Claim]) -> String {
+    let page = std::fs::read_to_string(repository(PAGE)).unwrap();
+    let mut sources: Vec<&str> = Vec::new();
+    for claim in claims {
+        let table = claim.text("table").unwrap();
+        if !sources.contains(&table) {
+            sources.push(table);
+        }
+    }
+    let place = |source: &&str| page.find(&format!("<!-- {source}: begin -->")).unwrap();
+    sources.sort_by_key(place);
+    let counts = |of: &dyn Fn(&Claim) -> bool| {
+        let verdicts: Vec<&str> = claims.iter().filter(|claim| of(claim)).map(|claim| claim.text("verdict").unwrap()).collect();
+        let count = |kind: &&str| verdicts.iter().filter(|verdict| verdict.starts_with(*kind)).count().to_string();
+        format!("{} | {}", verdicts.len(), VERDICTS.iter().map(count).collect::<Vec<_>>().join(" | "))
+    };
+    let mut table = format!("| source | claims | {} |\n|---|{}\n", VERDICTS.join(" | "), "--:|".repeat(VERDICTS.len() + 1));
+    for source in &sources {
+        let heading = page[..place(source)].rsplit("\n## ").next().unwrap().lines().next().unwrap();
+        let name = format!("[{heading}](#{})", super::reference::anchor(heading));
+        let of = |claim: &Claim| claim.text("table") == Some(source);
+        writeln!(table, "| {name} | {} |", counts(&of)).unwrap();
+    }
+    writeln!(table, "| all | {} |", counts(&|_| true)).unwrap();
+    table
 }
 
 struct Claim(Table);
@@ -158,7 +198,7 @@ fn filled(text: &str, values: &[(String, f64)]) -> String {
 /// Charts of the page equal the output of their commands: `sensitol ... --svg docs/figures/NAME.svg` stands with each.
 #[test]
 fn charts_are_drawn_by_their_commands() {
-    let page = std::fs::read_to_string(repository(PAGE)).unwrap();
+    let page = std::fs::read_to_string(repository(CHARTS)).unwrap();
     let commands: Vec<&str> = page.split('`').filter(|text| text.contains("--svg docs/figures/")).collect();
     let drawn: BTreeSet<String> = commands.par_iter().map(|command| drawn(command)).collect();
     let files = std::fs::read_dir(repository("docs/figures")).unwrap();
