@@ -357,7 +357,7 @@ def test_a_result_tells_what_was_required(study):
 def test_an_allocation_has_the_study_that_it_found(tmp_path):
     study = st.read(os.path.join(REPOSITORY, "examples/shaft-and-housing/study.toml"))
     found = study.allocate()
-    # The cost of the published optimum in docs/commands.md.
+    # The cost of the published optimum in docs/validation.md.
     assert found.cost_after == pytest.approx(8.0536, abs=5e-5)
     assert found.study.dimensions["B"].tolerance[1] == pytest.approx(0.00811423, rel=1e-5)
     found.study.write(tmp_path / "tighter.toml")
