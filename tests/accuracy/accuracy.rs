@@ -423,8 +423,8 @@ fn the_how_to_pages_quote_what_was_measured() {
     says(
         "docs/how-to/trust-a-result.md",
         &format!(
-            "Over {} functions the error of sigma was within three times its estimate in {} of {} cases for `auto` and in {} of {} \
-             for `six-n`, `full`, `classic` and the four-point `six-n`",
+            "Over {} functions the error of sigma was within three times its estimate in {} of {} cases for `auto`. It was in {} of {} \
+             cases for `six-n`, `full`, `classic` and the four-point `six-n`",
             rows().len(),
             covered.0,
             covered.1,

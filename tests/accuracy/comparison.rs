@@ -82,8 +82,7 @@ impl Case {
     fn shown(&self) -> String {
         let sigma = self.reference[1];
         let scales = [1e-4 * sigma, 1e-4 * sigma, 1e-4, 1e-4];
-        let figures: Vec<String> =
-            (0..4).map(|k| figure(self.reference[k], scales[k], 9)).collect();
+        let figures: Vec<String> = (0..4).map(|k| figure(self.reference[k], scales[k], 9)).collect();
         figures.join(" ")
     }
 
@@ -124,7 +123,8 @@ impl Case {
 fn table(cases: &[Case]) -> String {
     let titles: Vec<&str> = cases.iter().map(|case| case.title).collect();
     let references: Vec<String> = cases.iter().map(Case::shown).collect();
-    let mut table = format!("| in the paper | ours | {} |\n|---|---|{}\n", titles.join(" | "), "---|".repeat(cases.len()));
+    let mut table =
+        format!("| in the paper | ours | {} |\n|---|---|{}\n", titles.join(" | "), "---|".repeat(cases.len()));
     writeln!(table, "| reference | | {} |", references.join(" | ")).unwrap();
     for (name, key, ours) in methods() {
         let cells: Vec<String> = cases.iter().map(|case| case.cell(&ours)).collect();

@@ -84,11 +84,13 @@ fn overview(claims: &[Claim]) -> String {
     let place = |source: &&str| page.find(&format!("<!-- {source}: begin -->")).unwrap();
     sources.sort_by_key(place);
     let counts = |of: &dyn Fn(&Claim) -> bool| {
-        let verdicts: Vec<&str> = claims.iter().filter(|claim| of(claim)).map(|claim| claim.text("verdict").unwrap()).collect();
+        let verdicts: Vec<&str> =
+            claims.iter().filter(|claim| of(claim)).map(|claim| claim.text("verdict").unwrap()).collect();
         let count = |kind: &&str| verdicts.iter().filter(|verdict| verdict.starts_with(*kind)).count().to_string();
         format!("{} | {}", verdicts.len(), VERDICTS.iter().map(count).collect::<Vec<_>>().join(" | "))
     };
-    let mut table = format!("| source | claims | {} |\n|---|{}\n", VERDICTS.join(" | "), "--:|".repeat(VERDICTS.len() + 1));
+    let mut table =
+        format!("| source | claims | {} |\n|---|{}\n", VERDICTS.join(" | "), "--:|".repeat(VERDICTS.len() + 1));
     for source in &sources {
         let heading = page[..place(source)].rsplit("\n## ").next().unwrap().lines().next().unwrap();
         let name = format!("[{heading}](#{})", super::reference::anchor(heading));

@@ -267,7 +267,7 @@ pub fn documents() -> Vec<String> {
 }
 
 /// Returns the Markdown files of a folder.
-fn pages(folder: &str) -> Vec<String> {
+pub fn pages(folder: &str) -> Vec<String> {
     let files = std::fs::read_dir(repository(folder)).unwrap();
     let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
     names.filter(|name| name.ends_with(".md")).map(|name| format!("{folder}/{name}")).collect()

@@ -11,6 +11,7 @@ mod help;
 mod recalculated;
 mod reference;
 mod report_reference;
+mod sentences;
 #[cfg(unix)]
 mod terminals;
 mod words;

@@ -134,7 +134,8 @@ impl<'s> Keys<'s> {
                 tables.push(format!("[`{key}`](#{key})"));
             }
         }
-        let required: Vec<String> = schema["required"].as_array().unwrap().iter().map(|key| code(key.as_str().unwrap())).collect();
+        let required: Vec<String> =
+            schema["required"].as_array().unwrap().iter().map(|key| code(key.as_str().unwrap())).collect();
         writeln!(self.text, "- Tables: {}. Required: {}.\n", tables.join(", "), required.join(", ")).unwrap();
     }
 
@@ -271,7 +272,11 @@ impl<'s> Keys<'s> {
         if let Some(words) = value["enum"].as_array() {
             if words.len() > MOST_WORDS {
                 let known = words.iter().any(|word| word == "truncated-normal");
-                return if known { "kind of [distribution](#dimensions-distribution)".to_owned() } else { listed(words) };
+                return if known {
+                    "kind of [distribution](#dimensions-distribution)".to_owned()
+                } else {
+                    listed(words)
+                };
             }
             return listed(words);
         }
@@ -360,7 +365,8 @@ pub fn commands() -> String {
         let several: Vec<&str> =
             options.iter().filter(|(_, line)| counts[line.as_str()] > 1).map(|(name, _)| name.as_str()).collect();
         if !several.is_empty() {
-            writeln!(page, "- [Options of several commands](#options-of-several-commands): {}", several.join(", ")).unwrap();
+            writeln!(page, "- [Options of several commands](#options-of-several-commands): {}", several.join(", "))
+                .unwrap();
         }
         if !page.ends_with("\n\n") {
             page.push('\n');

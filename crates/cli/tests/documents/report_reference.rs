@@ -22,7 +22,8 @@ const INTRODUCTION: &str = "# JSON reports\n\n\
 pub fn json_report() -> String {
     let output = sensitol(&["schema", "--report"]).output().unwrap();
     let schema: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let mut page = Page { defs: &schema["$defs"], text: INTRODUCTION.to_owned(), done: Vec::new(), lines: BTreeMap::new() };
+    let mut page =
+        Page { defs: &schema["$defs"], text: INTRODUCTION.to_owned(), done: Vec::new(), lines: BTreeMap::new() };
     for command in schema["anyOf"].as_array().unwrap() {
         let name = name(command).unwrap();
         // The list of several reports contains no new keys.
@@ -177,7 +178,8 @@ impl<'s> Page<'s> {
         let named = |kind: &str| match kind {
             "array" => {
                 let of = form.get("items").or_else(|| form["prefixItems"].get(0)).unwrap();
-                format!("list of {}", self.kind(&[of]))
+                let of = self.kind(&[of]);
+                if of.ends_with('?') { format!("list of ({of})") } else { format!("list of {of}") }
             }
             "object" => format!("names, each with {}", self.kind(&[&form["additionalProperties"]])),
             "boolean" => "`true|false`".to_owned(),
