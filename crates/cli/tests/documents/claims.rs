@@ -55,7 +55,7 @@ fn every_published_claim_is_checked_by_its_command() {
             .or_insert_with(|| "| claim | printed | ours | verdict | command |\n|---|--:|--:|---|---|\n".to_owned());
         let [ours, verdict] = ["ours", "verdict"].map(|key| filled(claim.text(key).unwrap_or("-"), &values));
         let run = match claim.text("run") {
-            Some(run) if last.get(claim.text("table").unwrap()) == Some(&run) => "as above".to_owned(),
+            Some(run) if last.get(claim.text("table").unwrap()) == Some(&run) => "″".to_owned(),
             Some(run) => format!("`sensitol {run}`"),
             None => "-".to_owned(),
         };

@@ -60,7 +60,10 @@ pub fn study_file() -> String {
 /// Section that is not written by hand: plain studies keep the contacts of joints by it.
 const WRITTEN_BY_EXPAND: &str = "contacts";
 
-/// Lists at most three examples that have this section.
+/// Examples that are named with a section.
+const MOST_EXAMPLES: usize = 2;
+
+/// Lists the first examples that have this section.
 fn in_use(section: &str) -> String {
     if section == WRITTEN_BY_EXPAND {
         return "Written by `sensitol expand`.\n\n".to_owned();
@@ -80,7 +83,7 @@ fn in_use(section: &str) -> String {
     }
     assert!(!found.is_empty(), "no example has [{section}]");
     let link = |(folder, file): &(&str, String)| format!("[{folder}](../../examples/{folder}/{file})");
-    let links: Vec<String> = found.iter().take(3).map(link).collect();
+    let links: Vec<String> = found.iter().take(MOST_EXAMPLES).map(link).collect();
     format!("In use: {}.\n\n", links.join(", "))
 }
 
@@ -375,6 +378,10 @@ pub fn commands() -> String {
     page += "## Words\n\nThe meaning of the words that stand for an option.\n";
     for (option, words) in values {
         write!(page, "\n### {option}\n\n").unwrap();
+        if option == "--method" {
+            page += "[The methods, and their cost](../methods.md).\n";
+            continue;
+        }
         words.iter().for_each(|(word, help)| writeln!(page, "- `{word}`: {}", line(help)).unwrap());
     }
     page
