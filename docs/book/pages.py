@@ -23,6 +23,8 @@ ENTRY = re.compile(r"^(?P<indent> *)(?P<item>- )?\[(?P<title>[^\]]*)\]\((?P<targ
 LINK = re.compile(r"(?P<image>!?)\[(?P<text>(?:[^\[\]]|\[[^\[\]]*\])*)\]\((?P<target>[^()\s]+)\)")
 EXTERNAL = re.compile(r"^[a-z]+:")
 IMAGES = {".png", ".svg"}
+# Endings of texts that are copied as .txt: a licence has none, and the citation stands below the first page, which has no pages below it.
+PLAIN = {"", ".cff"}
 # Languages that mdBook highlights, by the ending of a file; others are shown plainly.
 LANGUAGES = {".toml": "toml", ".py": "python", ".json": "json", ".yaml": "yaml", ".c": "c", ".csv": "text", ".m": "text"}
 # Folders of the source code.
@@ -118,9 +120,9 @@ class Book:
         if target.suffix == ".md":
             raise Broken(f"{SUMMARY} does not name that page")
         readable = text_of(target)
-        if readable is None or target.suffix in IMAGES or not target.suffix:
-            # Browsers show .txt; a licence has no ending of its own.
-            place = target if target.suffix else Path(f"{target}.txt")
+        if readable is None or target.suffix in IMAGES or target.suffix in PLAIN:
+            # Browsers show .txt, and download other endings.
+            place = Path(f"{target}.txt") if target.suffix in PLAIN else target
             copy = self.folder / "src" / place
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / target, copy)

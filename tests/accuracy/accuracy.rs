@@ -304,19 +304,12 @@ fn summary(text: &mut String) {
     let sampled = count(smooth().flat_map(auto), |ran| ran.sampled);
     writeln!(text, "| smooth functions whose model was sampled | {} |", share(sampled)).unwrap();
     figures(text);
-    *text += "\n| method | median error, smooth | largest | within 3 estimates, where there is one | no estimate |\n|---|--:|--:|--:|--:|\n";
-    for (index, (name, _)) in contenders().iter().enumerate() {
-        let known: Vec<bool> = rows().iter().filter_map(|row| row.runs[index].covered()).collect();
-        let covered = if known.is_empty() { "-".to_owned() } else { share(count(&known, |covered| **covered)) };
-        let [median, largest] = median_and_largest(index);
-        writeln!(text, "| {name} | {median} | {largest} | {covered} | {} |", rows().len() - known.len()).unwrap();
-    }
 }
 
 /// Writes the table of all figures: of these functions without verification, and of those of `trust.jsonl` at check points.
 fn figures(text: &mut String) {
     *text += "\n## All figures\n\nMedian error of each figure on smooth functions without verification, mean and sigma in sigmas. In brackets: errors within \
-              three\nestimates, kinks included.\n\n| method | mean | sigma | skewness | kurtosis |\n|---|--:|--:|--:|--:|\n";
+              three\nestimates, kinks included.\n\n| method | mean | sigma | skewness | kurtosis | largest of sigma |\n|---|--:|--:|--:|--:|--:|\n";
     for (index, (name, _)) in contenders().iter().enumerate() {
         write!(text, "| {name} |").unwrap();
         for figure in 0..4 {
@@ -331,7 +324,7 @@ fn figures(text: &mut String) {
             let (held, all) = count(known, |held| *held);
             write!(text, " {} ({held} of {all}) |", digit(errors[errors.len() / 2])).unwrap();
         }
-        text.push('\n');
+        writeln!(text, " {} |", median_and_largest(index)[1]).unwrap();
     }
     *text += "\n## Error estimates\n\nThe functions of `trust.jsonl` as costly models, verified at check points: errors within three estimates, and in brackets the \
               median of\nestimate over error. Estimates exceed errors because few points must cover the unlucky draw too. A cheap model is sampled \
@@ -353,7 +346,6 @@ fn figures(text: &mut String) {
               wrong if a\ntarget is called met although the model has ten times the rejects.\n\n\
               | method | within 3 estimates, functions that judge | functions for constants | wrong verdicts |\n|---|--:|--:|--:|\n";
     *text += &external_models::table();
-    *text += "\n## Sigma\n";
 }
 
 /// Returns the median and the largest error of a contender on smooth functions.

@@ -18,7 +18,7 @@ fn code(text: &str) -> String {
 }
 
 /// Study shown on top of the page.
-const SHOWN: &str = "examples/stacked-blocks/study.toml";
+const SHOWN: &str = "examples/shaft-and-bore/study.toml";
 
 /// `docs/reference/study-file.md`.
 pub fn study_file() -> String {

@@ -11,7 +11,7 @@ use super::reference::anchor;
 const INTRODUCTION: &str = "# JSON reports\n\n\
     `--json` prints one object, or a list where a command says so. This page is made from the JSON Schema that `sensitol schema --report` prints,\n\
     which has the whole description of each key.\n\n\
-    - A line has the key, its type and its meaning. `?` after a type means that the value may be `null`.\n\
+    - A line has the key, its type and its meaning. `?` after a type means that the value may be `null`; objects are a list of them.\n\
     - Numbers have all their digits. An unknown value is `null`, never 0; no key is left out.\n\
     - `schema` is the version of the shape. Keys are added without a new version; a key that changes its meaning or is removed raises it.\n\
     - Several studies in one call give a list: each report has the key `study`, or it is `{ \"study\": .., \"error\": .., \"errors\": [{ .. }] }`.\n\
@@ -107,7 +107,11 @@ impl<'s> Page<'s> {
                     below.push((heading.clone(), objects));
                     heading
                 });
-                kind = kind.replacen("object", &format!("[object](#{})", anchor(&heading)), 1);
+                let target = anchor(&heading);
+                kind = match kind.contains("list of object") {
+                    true => kind.replacen("list of object", &format!("[objects](#{target})"), 1),
+                    false => kind.replacen("object", &format!("[object](#{target})"), 1),
+                };
             }
             let line = format!("- `{key}`: {kind}. {}", self.about(values[0])).trim_end_matches(" .").to_owned();
             match self.lines.get(&line) {
