@@ -100,7 +100,7 @@ fn the_tutorials_requirements_were_tried() {
     says(TUTORIAL, &format!("{kept} of the model's own assemblies keep the limits"));
     let capable = json(&["allocate", "examples/first-study/capable.toml", "--confirm", "100000"]);
     let more = number(&capable["cost_after"]) - number(&capable["cost_before"]);
-    says(TUTORIAL, &format!("the housing wider, and {more:.2} more buys a Cpk of 0.86."));
+    says(TUTORIAL, &format!("the housing wider, and {more:.2} more gives a Cpk of 0.86."));
     let kept = number(&capable["confirmation"]["characteristics"][0]["yield"]);
     says(TUTORIAL, &format!("{:.2} % keep the limits.", 100.0 * kept));
 }
