@@ -337,19 +337,21 @@ pub fn commands() -> String {
         page += &option(one, &mut values);
     }
     let subcommands = all(&command);
-    let of_commands: Vec<Vec<(String, String)>> = subcommands
-        .iter()
-        .map(|subcommand| own(subcommand).map(|one| (short(one), option(one, &mut values))).collect())
-        .collect();
-    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for (_, line) in of_commands.iter().flatten() {
-        *counts.entry(line).or_default() += 1;
+    let of_commands: Vec<Vec<String>> =
+        subcommands.iter().map(|one| own(one).map(|one| option(one, &mut values)).collect()).collect();
+    let names: Vec<&str> =
+        subcommands.iter().map(|one| one.get_bin_name().unwrap().trim_start_matches("sensitol ")).collect();
+    let groups = shared(&of_commands);
+    let heading = |group: usize| {
+        let of: Vec<&str> = groups[group].0.iter().map(|&command| names[command]).collect();
+        format!("{}: {}", group + 1, of.join(", "))
+    };
+    page += "\n## Options of several commands\n\nIn every command `STUDY` is the study, a .toml or .json file.\n";
+    for (group, (_, lines)) in groups.iter().enumerate() {
+        write!(page, "\n### {}\n\n{}", heading(group), lines.concat()).unwrap();
     }
-    let mut shared: Vec<&str> = counts.iter().filter(|(_, count)| **count > 1).map(|(line, _)| *line).collect();
-    shared.sort_by_key(|line| line.trim_start_matches(|sign: char| !sign.is_alphabetic()).to_lowercase());
-    write!(page, "\n## Options of several commands\n\n{}", shared.concat()).unwrap();
-    page += "\nIn every command: `STUDY` is the study, a .toml or .json file.\n\n";
-    for (subcommand, options) in subcommands.iter().zip(&of_commands) {
+    page.push('\n');
+    for (index, (subcommand, options)) in subcommands.iter().zip(&of_commands).enumerate() {
         let path = subcommand.get_bin_name().unwrap();
         let about = subcommand.get_long_about().or(subcommand.get_about()).unwrap().to_string();
         write!(page, "## {path}\n\n{}\n\n", paragraphs(&about)).unwrap();
@@ -362,14 +364,14 @@ pub fn commands() -> String {
                 writeln!(page, "- `{}`: {about}", one.get_value_names().unwrap()[0]).unwrap();
             }
         }
-        for (_, line) in options.iter().filter(|(_, line)| counts[line.as_str()] == 1) {
-            page += line;
-        }
-        let several: Vec<&str> =
-            options.iter().filter(|(_, line)| counts[line.as_str()] > 1).map(|(name, _)| name.as_str()).collect();
+        let known = |line: &String| groups.iter().any(|(_, lines)| lines.contains(line));
+        options.iter().filter(|line| !known(line)).for_each(|line| page += line);
+        let several: Vec<String> = (0..groups.len())
+            .filter(|&group| groups[group].0.contains(&index))
+            .map(|group| format!("[{}](#{})", group + 1, anchor(&heading(group))))
+            .collect();
         if !several.is_empty() {
-            writeln!(page, "- [Options of several commands](#options-of-several-commands): {}", several.join(", "))
-                .unwrap();
+            writeln!(page, "- Options of several commands: {}", several.join(", ")).unwrap();
         }
         if !page.ends_with("\n\n") {
             page.push('\n');
@@ -392,9 +394,25 @@ fn own(command: &Command) -> impl Iterator<Item = &Arg> {
     command.get_arguments().filter(|one| !one.is_positional() && !one.is_global_set() && one.get_id() != "help")
 }
 
-/// Returns the long name of an option, as it is typed.
-fn short(one: &Arg) -> String {
-    code(&format!("--{}", one.get_long().unwrap()))
+/// Commands by their index, and the lines of the options that they have in common.
+type Group = (Vec<usize>, Vec<String>);
+
+/// Groups the lines that several commands have by the commands that have them.
+fn shared(of_commands: &[Vec<String>]) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    let mut seen: Vec<&String> = Vec::new();
+    for line in of_commands.iter().flatten() {
+        let with: Vec<usize> = (0..of_commands.len()).filter(|&command| of_commands[command].contains(line)).collect();
+        if with.len() < 2 || seen.contains(&line) {
+            continue;
+        }
+        seen.push(line);
+        match groups.iter_mut().find(|(commands, _)| *commands == with) {
+            Some((_, lines)) => lines.push(line.clone()),
+            None => groups.push((with, vec![line.clone()])),
+        }
+    }
+    groups
 }
 
 /// Joins the lines of each paragraph.
