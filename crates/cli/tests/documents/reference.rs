@@ -194,26 +194,6 @@ impl<'s> Keys<'s> {
         format!("- {key}: {}{default}. {}\n", self.kind(value), line(&self.about(value)))
     }
 
-    /// Writes the lines of keys. Those that equal lines of an earlier section are named only.
-    fn lines(&mut self, rows: Vec<(String, String)>, path: &str) {
-        let mut repeated: BTreeMap<String, Vec<String>> = BTreeMap::new();
-        for (key, row) in rows {
-            match self.lines.get(&row) {
-                Some(place) if place != path && row.split_whitespace().count() > 7 => {
-                    repeated.entry(place.clone()).or_default().push(code(&key));
-                }
-                _ => {
-                    self.text += &row;
-                    self.lines.entry(row).or_insert_with(|| path.to_owned());
-                }
-            }
-        }
-        for (place, keys) in repeated {
-            writeln!(self.text, "- As in [{place}](#{}): {}.", anchor(&place), keys.join(", ")).unwrap();
-        }
-        self.text.push('\n');
-    }
-
     /// Writes the keys of a table.
     fn keys(&mut self, object: &'s Value, path: &str) {
         if let Some(one_of) = object["oneOf"].as_array() {
@@ -225,7 +205,8 @@ impl<'s> Keys<'s> {
             let table = if self.objects(value).is_empty() { None } else { self.place(value) };
             rows.push((key.clone(), self.row(key, value, default(object, key, value), table)));
         }
-        self.lines(rows, path);
+        self.text += &once(rows, path, &mut self.lines);
+        self.text.push('\n');
     }
 
     /// Writes tables that differ by their kind: the keys of each kind, then the meaning of the keys.
@@ -251,7 +232,8 @@ impl<'s> Keys<'s> {
             let table = if self.objects(value).is_empty() { None } else { self.place(value) };
             rows.push((key.to_owned(), self.row(key, value, default, table)));
         }
-        self.lines(rows, path);
+        self.text += &once(rows, path, &mut self.lines);
+        self.text.push('\n');
     }
 
     /// Returns the description of a value, or that of its type.
@@ -311,6 +293,33 @@ const MOST_WORDS: usize = 12;
 /// Returns the words of an enumeration as one piece of code.
 fn listed(words: &[Value]) -> String {
     code(&words.iter().map(|word| word.to_string()).collect::<Vec<_>>().join("|"))
+}
+
+/// Words that a reference to an earlier section has beside the names of section and keys, and those that it must save.
+const REFERENCE_WORDS: usize = 6;
+
+/// Returns lines of keys. Those of which an earlier section has equal ones are named with that section, if that is shorter.
+pub fn once(rows: Vec<(String, String)>, path: &str, known: &mut BTreeMap<String, String>) -> String {
+    let mut places: BTreeMap<String, (Vec<String>, usize)> = BTreeMap::new();
+    for (key, line) in &rows {
+        if let Some(place) = known.get(line).filter(|place| *place != path) {
+            let (keys, words) = places.entry(place.clone()).or_default();
+            keys.push(code(key));
+            *words += line.split_whitespace().count();
+        }
+    }
+    places.retain(|place, (keys, words)| *words > REFERENCE_WORDS + place.split_whitespace().count() + keys.len());
+    let mut text = String::new();
+    for (_, line) in rows {
+        if !known.get(&line).is_some_and(|place| places.contains_key(place)) {
+            writeln!(text, "{}", line.trim_end()).unwrap();
+        }
+        known.entry(line).or_insert_with(|| path.to_owned());
+    }
+    for (place, (keys, _)) in places {
+        writeln!(text, "- As in [{place}](#{}): {}.", anchor(&place), keys.join(", ")).unwrap();
+    }
+    text
 }
 
 /// Returns the anchor of a heading in the form of code hosts and mdBook.

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use serde_json::Value;
 
 use super::command::sensitol;
-use super::reference::anchor;
+use super::reference::{anchor, once};
 
 const INTRODUCTION: &str = "# JSON reports\n\n\
     `--json` prints one object, or a list where a command says so. This page is made from the JSON Schema that `sensitol schema --report` prints,\n\
@@ -55,9 +55,6 @@ struct Page<'s> {
     lines: BTreeMap<String, String>,
 }
 
-/// Lines of at most so many words are written again; longer ones are named with the place of the first.
-const SHORT_LINE: usize = 3;
-
 impl<'s> Page<'s> {
     fn resolved(&self, mut value: &'s Value) -> &'s Value {
         while let Some(name) = name(value) {
@@ -95,7 +92,7 @@ impl<'s> Page<'s> {
             }
         }
         let mut below = Vec::new();
-        let mut repeated: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let mut rows = Vec::new();
         for (key, values) in keys {
             let mut kind = self.kind(&values);
             let objects: Vec<&'s Value> = values.iter().copied().flat_map(|value| self.objects(value)).collect();
@@ -114,19 +111,9 @@ impl<'s> Page<'s> {
                 };
             }
             let line = format!("- `{key}`: {kind}. {}", self.about(values[0])).trim_end_matches(" .").to_owned();
-            match self.lines.get(&line) {
-                Some(place) if place != path && line.split_whitespace().count() > SHORT_LINE => {
-                    repeated.entry(place.clone()).or_default().push(format!("`{key}`"));
-                }
-                _ => {
-                    writeln!(self.text, "{}", line.trim_end()).unwrap();
-                    self.lines.entry(line).or_insert_with(|| path.to_owned());
-                }
-            }
+            rows.push((key.to_owned(), line));
         }
-        for (place, keys) in repeated {
-            writeln!(self.text, "- As in [{place}](#{}): {}.", anchor(&place), keys.join(", ")).unwrap();
-        }
+        self.text += &once(rows, path, &mut self.lines);
         self.text.push('\n');
         for (heading, objects) in below {
             write!(self.text, "### {heading}\n\n").unwrap();
