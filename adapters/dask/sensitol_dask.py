@@ -33,7 +33,10 @@ TICK_S, ALIVE_S, LOOK_S = 0.1, 0.5, 1.0
 SWEEP_S, SWEEPS = 2.0, 5
 SLURM_KEYS = ("jobs", "adapt", "queue", "account", "cores", "memory", "processes", "walltime", "interface", "python", "job_cpu", "job_mem",
               "job_extra_directives", "job_directives_skip", "job_script_prologue", "worker_extra_args", "scheduler_options",
-              "local_directory", "log_directory", "shebang", "nanny", "worker_command")  # fmt: skip
+              "local_directory", "log_directory", "shebang", "nanny", "worker_command", "security",
+              "shared_temp_directory")  # fmt: skip
+# Files of `security`: certificates and keys of TLS, by the names that `distributed.Security` gives them.
+TLS_KEYS = ("tls_ca_file", "tls_client_cert", "tls_client_key", "tls_scheduler_cert", "tls_scheduler_key", "tls_worker_cert", "tls_worker_key")
 
 
 class Fault(Exception):
@@ -122,7 +125,25 @@ def slurm_options(path):
     least, most = adapt.get("minimum", 0), adapt.get("maximum", 1)
     if not 0 <= least <= most or most < 1:
         raise Fault(f"sensitol-dask: {path}: `adapt` needs a maximum of 1 or more, and no greater minimum; got minimum {least}, maximum {most}")
+    if "security" in found:
+        checked_security(path, found["security"])
     return found
+
+
+def checked_security(path, security):
+    """`true` for credentials that are made for this cluster, or the files of one's own."""
+    expected = f"`true` or a table of files is expected, of {', '.join(TLS_KEYS)}"
+    if security is True:
+        return
+    if not isinstance(security, dict) or not security:
+        raise Fault(f"sensitol-dask: {path}: `security`: {expected}; got {security!r}")
+    for key, file in security.items():
+        if key not in TLS_KEYS:
+            raise Fault(f"sensitol-dask: {path}: `security` has no `{key}`: {expected}")
+        if not isinstance(file, str) or not os.path.isfile(file):
+            raise Fault(f"sensitol-dask: {path}: `security`: there is no file {file!r} for `{key}`")
+    if "tls_ca_file" not in security:
+        raise Fault(f"sensitol-dask: {path}: `security` needs `tls_ca_file`, by which each side knows the others")
 
 
 def counts(value):
@@ -149,6 +170,7 @@ class Kept:
         from sensitol_dask_keeper import alive, birth
 
         self.alive, engine = alive, os.getppid()
+        self.security = None
         text = json.dumps(what, sort_keys=True)
         begun = birth(engine)
         token = hashlib.sha256(f"{text} {engine} {begun} {os.getcwd()}".encode()).hexdigest()[:12]
@@ -168,6 +190,7 @@ class Kept:
                     if said is not None and "error" in said:
                         raise Fault(f"sensitol-dask: the cluster cannot be started: {said['error']}")
                     if said is not None:
+                        self.security = said.get("security")
                         return said["scheduler"]
                     if self.process.poll() is not None:
                         raise Fault(f"sensitol-dask: the cluster's process ended with code {self.process.returncode}")
@@ -258,7 +281,8 @@ class Bridge:
             self.kept = self.kept or Kept(self.what, self.asked.linger)
             self.address = self.kept.address(self.beat)
         try:
-            self.client = Client(self.address, timeout=5, set_as_default=False, name=f"sensitol-{self.session}")
+            security = self._security()
+            self.client = Client(self.address, timeout=5, set_as_default=False, name=f"sensitol-{self.session}", security=security)
         except ValueError as error:
             raise Fault(f"sensitol-dask: --cluster {self.asked.cluster}: {error}") from None
         if self.what["kind"] == "address":
@@ -267,6 +291,13 @@ class Bridge:
         self.sweeps, self.swept = SWEEPS, -math.inf
         self.look()
         self.sweep()
+
+    def _security(self):
+        """What a client needs for a scheduler of the keeper that speaks TLS."""
+        from distributed.security import Security
+
+        found = self.kept.security if self.kept else None
+        return Security(**found, require_encryption=True) if found else None
 
     def _bring(self):
         """Workers of a cluster that was there before may not have the module that tasks name."""

@@ -10,6 +10,7 @@ import os
 import pathlib
 import shutil
 import signal
+import stat
 import subprocess
 import sys
 import time
@@ -70,6 +71,15 @@ def opened(asked, folder):
     options.setdefault("memory", "1GB")
     prologue = [f"export PYTHONPATH={here()}${{PYTHONPATH:+:$PYTHONPATH}}", *options.pop("job_script_prologue", [])]
     scheduler = {"dashboard_address": None, **options.pop("scheduler_options", {})}
+    security = options.pop("security", None)
+    if isinstance(security, dict):
+        from distributed.security import Security
+
+        # dask-jobqueue makes its own for `true`, and lays them where the jobs read them.
+        security = Security(**security, require_encryption=True)
+    if security is not None:
+        options["security"] = security
+        options.setdefault("shared_temp_directory", str(keys_of(folder)))
     cluster = SLURMCluster(
         job_name=asked["token"], job_script_prologue=prologue, death_timeout=DEATH_S, scheduler_options=scheduler,
         local_directory=options.pop("local_directory", None), log_directory=options.pop("log_directory", str(folder)), **options,
@@ -80,6 +90,25 @@ def opened(asked, folder):
     else:
         cluster.scale(jobs=jobs or 1)
     return cluster
+
+
+def keys_of(folder):
+    """A folder for the keys of workers, which all nodes see and only this user reads. It is removed with the cluster."""
+    private = pathlib.Path.home() / ".sensitol-dask"
+    private.mkdir(mode=0o700, exist_ok=True)
+    found = os.lstat(private)
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & 0o077:
+        raise OSError(f"{private} is open to other users: remove it, or set `shared_temp_directory`")
+    (private / folder.name).mkdir(mode=0o700, exist_ok=True)
+    return private / folder.name
+
+
+def of_client(cluster):
+    """Certificate and key of a client, of a cluster that speaks TLS. They stand in the private folder until the cluster ends."""
+    security = getattr(cluster, "security", None)
+    keys = ("tls_ca_file", "tls_client_cert", "tls_client_key")
+    found = {key: getattr(security, key, None) for key in keys}
+    return {"security": found} if all(found.values()) else {}
 
 
 def here():
@@ -101,7 +130,7 @@ def keep(folder):
         if asked["kind"] == "slurm":
             cancel(asked["token"])
         cluster = opened(asked, folder)
-        said = {"scheduler": cluster.scheduler_address, "pid": os.getpid(), "birth": birth(os.getpid())}
+        said = {"scheduler": cluster.scheduler_address, "pid": os.getpid(), "birth": birth(os.getpid()), **of_client(cluster)}
         (folder / "said.tmp").write_text(json.dumps(said))
         os.replace(folder / "said.tmp", folder / "said.json")
         used = time.monotonic()
@@ -127,6 +156,7 @@ def keep(folder):
                 # The jobs are gone already; what is left ends with this process.
                 pass
         shutil.rmtree(folder, ignore_errors=True)
+        shutil.rmtree(pathlib.Path.home() / ".sensitol-dask" / folder.name, ignore_errors=True)
         os._exit(0)
 
 

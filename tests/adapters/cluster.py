@@ -375,7 +375,8 @@ def what_is_wrong_is_one_error():
         broken.write_text("jobs: [1\n")
         unknown = pathlib.Path(folder) / "unknown.yaml"
         unknown.write_text("jbos: 1\n")
-        wrong = {"all.yaml": "adapt: all\n", "more.yaml": "adapt: { minimum: 3, maximum: 2 }\n", "least.yaml": "adapt: { least: 1 }\n", "none.yaml": "jobs: 0\n"}
+        wrong = {"all.yaml": "adapt: all\n", "more.yaml": "adapt: { minimum: 3, maximum: 2 }\n", "least.yaml": "adapt: { least: 1 }\n", "none.yaml": "jobs: 0\n",
+                 "open.yaml": "security: no\n", "odd.yaml": "security: { tls_ca: ca.pem }\n", "gone.yaml": "security: { tls_ca_file: ca.pem }\n"}  # fmt: skip
         for name, text in wrong.items():
             (pathlib.Path(folder) / name).write_text(text)
         cases = [
@@ -396,6 +397,9 @@ def what_is_wrong_is_one_error():
                 (command("slurm", options=["--options", "more.yaml"]), ["`adapt`", "minimum 3", "maximum 2"]),
                 (command("slurm", options=["--options", "least.yaml"]), ["`adapt`", "{ minimum: 0, maximum: 8 }"]),
                 (command("slurm", options=["--options", "none.yaml"]), ["`jobs`", "1 or more", "0"]),
+                (command("slurm", options=["--options", "open.yaml"]), ["`security`", "`true`", "tls_ca_file", "False"]),
+                (command("slurm", options=["--options", "odd.yaml"]), ["`security` has no `tls_ca`", "tls_ca_file"]),
+                (command("slurm", options=["--options", "gone.yaml"]), ["there is no file 'ca.pem'", "`tls_ca_file`"]),
             ]
         for argv, words in cases:
             with client(argv, folder, **hello()) as model:
@@ -488,6 +492,12 @@ def jobs_of_slurm_have_the_same_bits():
             (path.parent / "slurm.yaml").write_text(SLURM_OPTIONS + "queue: nowhere\n")
             _, errors = sensitol("analyze", path, "--journal", "none", code=2)
             assert "nowhere" in errors or "invalid partition" in errors, errors
+        with on_slurm(environment) as path:
+            # Scheduler, workers and client speak TLS alone, and the keys are gone afterwards.
+            (path.parent / "slurm.yaml").write_text(SLURM_OPTIONS + "security: true\n")
+            sensitol("analyze", path, "--journal", "none")
+            left = pathlib.Path.home() / ".sensitol-dask"
+            until(lambda: not any(left.iterdir()), "the keys of workers are removed", GONE_S)
         with on_slurm(environment) as path, tempfile.TemporaryDirectory() as folder:
             # Both nodes answer, and say so.
             pathlib.Path(folder, "model.py").write_text(MODEL)
