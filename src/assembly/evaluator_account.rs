@@ -86,7 +86,9 @@ impl EvaluatorAccount {
     /// Counts a failure of a process.
     pub fn failed(&mut self, error: &ProcessError) {
         match error.fault {
-            ProcessFault::TimedOut { .. } | ProcessFault::SilentAtStart { .. } => self.counts.timeouts += 1,
+            ProcessFault::TimedOut { .. } | ProcessFault::SilentAtStart { .. } | ProcessFault::EndlessLine { .. } => {
+                self.counts.timeouts += 1
+            }
             ProcessFault::Crashed { .. } | ProcessFault::EndedAtStart { .. } => self.counts.crashes += 1,
             _ => self.counts.garbage += 1,
         }

@@ -82,6 +82,12 @@ pub enum ProcessFault {
         /// Time limit for an answer, after which it was stopped.
         after: Duration,
     },
+    /// The process still writes at a line that does not end.
+    #[error("the model writes a line that did not end within {} s: end every answer with a newline", .after.as_secs_f64())]
+    EndlessLine {
+        /// Time limit for an answer, after which it was stopped.
+        after: Duration,
+    },
     /// The process wrote a line that is not an answer.
     #[error("the model wrote a line that is not an answer ({}): {line}{}", clipped(reason), hint(line))]
     Garbage {

@@ -119,6 +119,12 @@ for line in sys.stdin:
         elif mode == "crash-once":
             if once():
                 os.kill(os.getpid(), 9)
+        elif mode == "drip":
+            # An answer without an end, a byte at a time.
+            while True:
+                out.write("1")
+                out.flush()
+                time.sleep(0.02)
         elif mode == "hang" or mode == "hang-in-window":
             time.sleep(60)
         elif mode == "garbage":

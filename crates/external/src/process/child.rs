@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use process_wrap::std::{ChildWrapper, CommandWrap};
 
 use super::descendants::{Mark, VARIABLE};
+use super::line_reader::{UnfinishedLine, read_line};
 use super::protocol::Line;
 use crate::settings::Listener;
 use sensitol::assembly::{Exit, ProcessFault, Quoted, StderrTail};
@@ -53,6 +54,7 @@ pub(super) struct Child {
     /// Time at which stdin was closed; None while it is open.
     closed: Option<Instant>,
     stderr: Arc<Mutex<VecDeque<String>>>,
+    unfinished: UnfinishedLine,
     readers: Vec<JoinHandle<()>>,
 }
 
@@ -98,11 +100,12 @@ impl Child {
             }
         };
         let stdout = process.stdout().take().expect("stdout is a pipe");
-        let events = events.clone();
+        let (events, unfinished) = (events.clone(), UnfinishedLine::default());
+        let written = unfinished.clone();
         let stderr = Arc::new(Mutex::new(VecDeque::new()));
         let (pipe, tail) = (process.stderr().take().expect("stderr is a pipe"), Arc::clone(&stderr));
         let streams = thread(write).and_then(|_| {
-            let out = thread(move || read(stdout, number, &events))?;
+            let out = thread(move || read(stdout, number, &events, &written))?;
             Ok(vec![out, thread(move || listen(pipe, &tail, listener.as_ref()))?])
         });
         let readers = match streams {
@@ -125,8 +128,14 @@ impl Child {
             requests: Some(requests),
             closed: None,
             stderr,
+            unfinished,
             readers,
         })
+    }
+
+    /// True if the child wrote at an unfinished line within this time.
+    pub(super) fn writes_on(&self, time: Duration) -> bool {
+        self.unfinished.grew_within(time)
     }
 
     /// Sends lines. A failure shows later as the end of the child.
@@ -231,13 +240,12 @@ fn exit(status: ExitStatus) -> Exit {
 }
 
 /// Reads stdout until its end or a line that cannot be understood.
-fn read(stdout: impl Read, child: u64, events: &Sender<Event>) {
+fn read(stdout: impl Read, child: u64, events: &Sender<Event>, unfinished: &UnfinishedLine) {
     let mut stdout = BufReader::with_capacity(1 << 16, stdout);
     let mut lines = Vec::new();
     let mut line = Vec::new();
     loop {
-        line.clear();
-        let read = (&mut stdout).take(LONGEST as u64 + 1).read_until(b'\n', &mut line);
+        let read = read_line(&mut stdout, LONGEST, &mut line, unfinished);
         let ended = !matches!(read, Ok(read) if read > 0);
         if !ended {
             let oversized = line.len() > LONGEST;

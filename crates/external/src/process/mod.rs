@@ -16,6 +16,7 @@ mod border;
 mod child;
 mod descendants;
 mod lane;
+mod line_reader;
 mod pool;
 mod program;
 mod protocol;

@@ -51,6 +51,8 @@ pub(super) struct Pool {
     unused: u32,
     /// Error of the last such child, once there were too many.
     useless: Option<ProcessError>,
+    /// Error of a child whose line did not end. No points are sent after it.
+    endless: Option<ProcessError>,
     adapter: Option<ModelInfo>,
     /// True if numbers are converted on their way to the program and back.
     pub(super) converts: bool,
@@ -105,6 +107,7 @@ impl Pool {
             failed_starts: 0,
             unused: 0,
             useless: None,
+            endless: None,
             adapter: None,
             converts: false,
             reference: Reference::default(),
@@ -169,7 +172,11 @@ impl Pool {
             if checked || (stopping && !self.busy() && !waits) {
                 break;
             }
-            let dispatched = if stopping { Ok(()) } else { self.dispatch(work) };
+            let dispatched = match &self.endless {
+                Some(error) => Err(error.clone()),
+                None if stopping => Ok(()),
+                None => self.dispatch(work),
+            };
             let turned = dispatched.and_then(|()| self.turn(&mut batch));
             let work = batch.as_mut().expect("a batch");
             if let Err(error) = turned {
@@ -374,7 +381,17 @@ impl Pool {
                 }
                 State::Ready(worker) => {
                     let Some(position) = worker.overdue(self.settings.timeout, now) else { continue };
-                    let fault = ProcessFault::TimedOut { after: self.settings.timeout };
+                    let after = self.settings.timeout;
+                    if worker.child.writes_on(after / 2) {
+                        // Every child would cost a timeout, and no point is to blame.
+                        let (_, stderr) = worker.child.kill();
+                        let error = ProcessError { fault: ProcessFault::EndlessLine { after }, stderr };
+                        self.slots[index].state = State::Empty;
+                        self.account.failed(&error);
+                        self.endless = Some(error.clone());
+                        return Err(error);
+                    }
+                    let fault = ProcessFault::TimedOut { after };
                     let Some(late) = worker.under_way.remove(position) else { continue };
                     if worker.abilities.cancel && late.started.is_some() && late.row != SENTINEL {
                         // The program can cancel this point, so the child goes on.

@@ -258,6 +258,20 @@ fn children_that_say_nothing() {
     assert!((0..2).all(|row| matches!(fault(&out, row, 0), ProcessFault::Crashed { .. })));
 }
 
+/// A line that drips for ever costs one timeout in all: no point is to blame, and a fresh child would write the same.
+#[test]
+fn an_endless_line_costs_one_timeout() {
+    let model = model(settings("drip", &[]).with_timeout(Duration::from_millis(400)).with_retries(3));
+    // The third point drips.
+    for first in [2, 0] {
+        let out = at(&model, &POINTS);
+        let endless = |row: usize| matches!(fault(&out, row, 0), ProcessFault::EndlessLine { .. });
+        assert!((first..POINTS.len()).all(endless), "{:?}", out.error(first, 0));
+    }
+    let counts = model.account().unwrap().counts;
+    assert_eq!((counts.starts, counts.timeouts), (1, 1));
+}
+
 /// The fault of a child that was not sent a point is charged to none. After a few such children no more are started.
 #[test]
 fn children_that_never_take_a_point_are_given_up() {
