@@ -32,6 +32,7 @@ pub use crate::analysis::result::points_to_decide::points_to_decide;
 pub use crate::analysis::result::quantile_estimates::QuantileEstimates;
 pub use crate::analysis::result::range_figures::{LinearFigures, RangeFigures};
 pub use crate::analysis::result::sampled_model::SampledModel;
+pub use crate::analysis::result::sampled_tail::SampledTail;
 pub use crate::analysis::result::serialisation::CharacteristicShape;
 pub use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, SobolIndices};
 pub(crate) use crate::analysis::result::verification::TRUSTED;
@@ -44,7 +45,8 @@ use crate::analysis::sampling::model_sample;
 use crate::analysis::sampling::nominal_kink;
 use crate::analysis::sampling::recorded_failures;
 use crate::analysis::sampling::sample_budget::SampleBudget;
-use crate::analysis::sampling::verification_stage;
+pub use crate::analysis::sampling::tail_sample::most_tail_points;
+use crate::analysis::sampling::{tail_sample, verification_stage};
 pub use crate::estimate::ConditionalYield;
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
@@ -242,7 +244,8 @@ fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>)
     };
     found.extend(kinks.into_iter().map(|kink| kink.warning));
     let mut left = SampleBudget::new(evaluator.remaining());
-    verification_stage::verify(&evaluator, outcome, options, (&kinked, &mut left), &mut characteristics);
+    let refuted = verification_stage::verify(&evaluator, outcome, options, (&kinked, &mut left), &mut characteristics);
+    tail_sample::decide(&evaluator, outcome, options, &refuted, &mut characteristics);
     found.extend(recorded_failures::add(problem, &mut characteristics));
     Checked { characteristics, shares, extremes, found, left, ledger: evaluator.into_ledger() }
 }

@@ -10,6 +10,11 @@ use sensitol_numeric::correlation::{Together, Transform};
 use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw, Probability, ScoreTable, behind_normal};
 use sensitol_numeric::sampling::SamplingError;
 
+/// Ends of normal variables, in sigmas.
+const BEHIND: [f64; 2] = [-9.0, 9.0];
+/// Accuracy of a normal variable behind an input, in sigmas.
+const FINE: f64 = 1e-3;
+
 /// Points as columns, one for every variable.
 pub(crate) type Columns = Vec<Vec<f64>>;
 
@@ -90,6 +95,21 @@ impl<'p> NormalSpace<'p> {
             input.standardise(column);
         }
         columns
+    }
+
+    /// Normal variable behind a standardised input, to a thousandth of a sigma. Returns None if inputs are correlated.
+    pub(crate) fn behind(&self, variable: usize, standardised: f64) -> Option<f64> {
+        if self.correlated.is_some() {
+            return None;
+        }
+        let [mut low, mut high] = BEHIND;
+        while high - low > FINE {
+            let middle = 0.5 * (low + high);
+            let mut value = [middle];
+            self.inputs[variable].standardise(&mut value);
+            if value[0] < standardised { low = middle } else { high = middle }
+        }
+        Some(0.5 * (low + high))
     }
 
     /// Points in the form of the problem, for the model.

@@ -34,6 +34,7 @@ mod measured;
 mod mixture;
 mod model;
 mod plain_points;
+mod refuted_tail;
 mod search;
 mod target;
 mod unmet;
@@ -49,7 +50,7 @@ use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
 #[cfg(feature = "schema")]
 pub(crate) use crate::rare::json::RareShape;
-use crate::simulation::{Pace, SimulationError, Surrogates};
+use crate::simulation::{KnownSurrogate, Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
 use crate::warning::Warning;
 use sensitol_numeric::characteristic::Characteristic;
@@ -63,6 +64,8 @@ use sensitol_numeric::verdict::Judged;
 use crate::rare::design_point::{Place, places};
 use crate::rare::exploration::Explored;
 use model::Model;
+pub use refuted_tail::MOST_TAIL_POINTS;
+pub(crate) use refuted_tail::{RefutedTail, sample_refuted};
 use search::Search;
 use target::Target;
 pub use unmet::Unmet;
@@ -362,7 +365,7 @@ fn sought(
     let begun = Instant::now();
     let surrogates = Surrogates::of(problem, &options.surrogate, run)?;
     let space = NormalSpace::with_far_tails(problem, surrogates.outcome.plan.varying())?;
-    let targets = targets(problem, &surrogates, &space);
+    let targets = targets(problem, &surrogates.known, &space);
     let evaluator = Evaluator::new(problem, run).with_seed(options.seed);
     let mut model = Model::new(evaluator, &space);
     let places: Vec<Place> = targets.iter().enumerate().flat_map(|(index, target)| places(index, target)).collect();
@@ -493,10 +496,10 @@ impl SampledStages<'_> {
 }
 
 /// Targets: every limit of every characteristic whose surrogate varies.
-fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a NormalSpace<'a>) -> Vec<Target<'a>> {
+fn targets<'a>(problem: &Problem, known: &'a [Option<KnownSurrogate>], space: &'a NormalSpace<'a>) -> Vec<Target<'a>> {
     let mut targets = Vec::new();
     for (c, characteristic) in problem.characteristics().iter().enumerate() {
-        let Some(known) = surrogates.known.get(c).and_then(Option::as_ref) else { continue };
+        let Some(known) = known.get(c).and_then(Option::as_ref) else { continue };
         let (limits, [lower, upper]) = (characteristic.limits(), problem.kept_limits(c).ends());
         for (side, given, limit) in [(-1.0, limits.lower(), lower), (1.0, limits.upper(), upper)] {
             let Some(given) = given else { continue };

@@ -129,6 +129,12 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Adds places for rejects of a target, the nearest to the means first, within a budget of evaluations.
+    pub(super) fn place(&mut self, index: usize, rejects: &[Vec<f64>], budget: usize, model: &mut Model<'_>) {
+        let found = self.half_spaces(index, rejects, budget, model);
+        self.take(found);
+    }
+
     /// Half-spaces in case the surrogate is wrong about the limit.
     ///
     /// One is at the surrogate's nearest place, in case the limit continues otherwise. The other is at the point to

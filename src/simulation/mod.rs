@@ -52,7 +52,7 @@ use sensitol_numeric::power::{Rescale, Rescaling};
 use sensitol_numeric::sampling::{Draws, Portion, Room};
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::Judged;
-pub(crate) use surrogates::{Surrogates, chosen};
+pub(crate) use surrogates::{KnownSurrogate, Surrogates, chosen};
 use tally::{Block, Tally};
 
 /// Options of a simulation.

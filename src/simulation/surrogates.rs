@@ -55,7 +55,7 @@ impl Surrogates {
     }
 
     /// Surrogates of an existing analysis by characteristic. Returns None if there is none.
-    pub(super) fn known_of(problem: &Problem, outcome: &Outcome) -> Vec<Option<KnownSurrogate>> {
+    pub(crate) fn known_of(problem: &Problem, outcome: &Outcome) -> Vec<Option<KnownSurrogate>> {
         (0..problem.characteristics().len()).map(|c| Self::of_one(problem, outcome, c).ok().flatten()).collect()
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::estimate::strata::{length, unit};
+use crate::estimate::strata::{dot, length, unit};
 use crate::verification::check_points::{Design, ON_LINE};
 use sensitol_numeric::distribution::standard_normal;
 
@@ -17,6 +17,8 @@ const LARGE: f64 = 0.3;
 /// Factor of the root mean square at the random points from which on a residual is sudden. At three sigmas the residuals of a parabola through
 /// the nodes of a three-point rule are 7 times as large for a cubic, and 8 times for a quartic.
 const SUDDEN: f64 = 10.0;
+/// Root mean square of the residuals at random points in sigmas above which a surface does not follow the model: 1 % of the variance.
+const ASTRAY: f64 = 0.1;
 /// Part of the last residual below which an earlier one is no part of it.
 const NOTHING: f64 = 0.02;
 /// Component of a direction above which the ray is the axis of that input.
@@ -104,9 +106,36 @@ impl CheckRay {
         Self { direction: unit(point.to_vec()), stations: vec![(length(point), row)] }
     }
 
+    /// Ray without a point.
+    pub(super) fn towards(direction: Vec<f64>) -> Self {
+        Self { direction, stations: Vec::new() }
+    }
+
+    /// Adds a point at a distance, with its row.
+    pub(super) fn add(&mut self, distance: f64, row: usize) {
+        self.stations.push((distance, row));
+        self.stations.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.stations.is_empty()
+    }
+
+    /// True if the ray has this direction, of length 1.
+    pub(super) fn is_along(&self, direction: &[f64]) -> bool {
+        dot(&self.direction, direction) > ALONG_ONE
+    }
+
     /// True if the ray is the axis of one input.
     pub(super) fn is_of_one_input(&self) -> bool {
         self.direction.iter().any(|part| part.abs() > ALONG_ONE)
+    }
+
+    /// True if the farthest residual is large, and sudden or one of a surface that does not follow the model: a smooth surface that does has
+    /// none. `d` has the residual of every row.
+    pub(super) fn refutes(&self, d: &[f64], random: Range<usize>) -> bool {
+        let (last, near) = (d[self.last().1].abs(), root_mean_square(&d[random]));
+        last.is_finite() && last > LARGE && (last > SUDDEN * near || near > ASTRAY)
     }
 
     /// Farthest point on it.

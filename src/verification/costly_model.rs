@@ -13,6 +13,8 @@ use crate::verification::decision_points;
 use crate::verification::far_effect::FarEffect;
 use crate::verification::far_residual::FarResidual;
 use crate::verification::likeliest_point::likeliest;
+use crate::verification::plan_nodes::{NodesOnRays, PlanNode};
+use crate::verification::refuted_limit;
 use crate::verification::residual_error::{Judged, judge, regression};
 use crate::verification::unseen_share::unseen;
 use sensitol_numeric::sampling::Normals;
@@ -50,6 +52,8 @@ pub struct Target<'s> {
     pub surrogate: Option<&'s Surrogate>,
     /// Share of the variance of every varying dimension, straight line and curvature.
     pub shares: &'s [f64],
+    /// Points of the method's plan, if some of them have no value: those without one, and those of a single input.
+    pub nodes: &'s [PlanNode],
 }
 
 /// Figures of one characteristic from the check points.
@@ -72,6 +76,8 @@ pub struct CheckedFigures {
     pub lost: f64,
     /// Largest residual far from the means that changes the figures. None if there is none.
     pub far: Option<FarResidual>,
+    /// Points in normal space that are probably rejected, if a sudden residual refutes the surface at a limit. None if none does.
+    pub(crate) refuted: Option<Vec<Vec<f64>>>,
     /// Mean, sigma, skewness and kurtosis of the surface over the integration points.
     pub surface: Option<[f64; 4]>,
 }
@@ -140,14 +146,17 @@ pub fn verify_by_checks(
             }
         }
     }
+    // Points of the plan without a value bound the share of the assemblies without one, as check points do.
+    let nodes = NodesOnRays::add(&space, targets, &mut rays, answers.count);
     let figures = |c: usize| {
         let d = &answers.residuals[c];
+        let with_nodes = [d.as_slice(), &nodes.residuals[c]].concat();
         let nothing = CheckedFigures { failed: d.iter().filter(|d| d.is_nan()).count(), ..CheckedFigures::nothing() };
         let (Some(surface), Some(wish)) = (&surfaces[c], &wishes[c]) else { return nothing };
         // Ends of the kept limits, so that rounding does not reject a value on a limit.
         let [low, high] = problem.kept_limits(c).ends();
         let within = [[low, high], [low, f64::INFINITY], [f64::NEG_INFINITY, high]];
-        let effect = |ray| FarEffect::new(surface, &normals, ray, ray.profile(d), &within);
+        let effect = |ray| FarEffect::new(surface, &normals, ray, ray.profile(&with_nodes), &within);
         let far: Vec<FarEffect<'_>> = rays.iter().filter_map(effect).collect();
         let judged = judge(&design, wish, surface, d, &answers.surfaces[c], &far, &within);
         let of_shares = |judged: &Judged| {
@@ -155,9 +164,15 @@ pub fn verify_by_checks(
             targets[c].shares.iter().map(error).collect::<Vec<f64>>()
         };
         let shares = judged.as_ref().map(of_shares);
-        let lost = lost(&design, d, &far);
-        let far = FarResidual::largest(surface, &far, &within.map(|interval| surface.share(interval)), varying);
-        CheckedFigures { surface: Some(surface.figures), shares, far, lost, ..nothing.judged(surface, judged, within) }
+        let lost = lost(&design, d, &far, &nodes.beside[c]);
+        let kept = within.map(|interval| surface.share(interval));
+        let random = design.random()..design.points.len();
+        let refuting: Vec<&FarEffect<'_>> =
+            far.iter().filter(|of| of.ray.refutes(&with_nodes, random.clone())).collect();
+        let refuted = refuted_limit::refuted(surface, &wish.line, &refuting, &kept, [low, high]);
+        let far = FarResidual::largest(surface, &far, &kept, varying);
+        let figures = nothing.judged(surface, judged, within);
+        CheckedFigures { surface: Some(surface.figures), shares, far, lost, refuted, ..figures }
     };
     let characteristics = (0..targets.len()).map(figures).collect();
     Some(Checked { characteristics, count: answers.count, unanswered: answers.unanswered })
@@ -203,15 +218,17 @@ fn likeliest_points(
 /// Greatest share of the assemblies without a value.
 ///
 /// A point without one along a single input stands for its half-space. Any other such point outside of these half-spaces belongs to a region
-/// of an unknown shape. The random points bound its share then, with the upper end of their 95 % interval.
-fn lost(design: &Design, d: &[f64], far: &[FarEffect<'_>]) -> f64 {
+/// of an unknown shape. The random points bound its share then, with the upper end of their 95 % interval. `beside` are points of the plan that
+/// several inputs deviate at.
+fn lost(design: &Design, d: &[f64], far: &[FarEffect<'_>], beside: &[Vec<f64>]) -> f64 {
     let failing = far.iter().filter(|effect| effect.profile.is_without_value());
     let (alone, several): (Vec<_>, Vec<_>) = failing.partition(|effect| effect.ray.is_of_one_input());
     let holds = |effect: &&FarEffect<'_>, point: &[f64]| dot(&effect.ray.direction, point) > effect.profile.from();
     let explained = |point: &[f64]| alone.iter().any(|effect| holds(effect, point));
     let random = design.random()..design.points.len();
     let open = random.clone().filter(|&row| d[row].is_nan() && !explained(&design.points[row])).count();
-    let unknown = several.iter().any(|effect| !explained(&effect.ray.end()));
+    let unknown =
+        several.iter().map(|effect| effect.ray.end()).chain(beside.iter().cloned()).any(|end| !explained(&end));
     let counted = if open > 0 || unknown { unseen(random.len(), open)[1] } else { 0.0 };
     (alone.iter().map(|effect| effect.lost).sum::<f64>() + counted).min(1.0)
 }
@@ -284,6 +301,7 @@ impl CheckedFigures {
             failed: 0,
             lost: 0.0,
             far: None,
+            refuted: None,
             surface: None,
         }
     }

@@ -16,6 +16,8 @@ mod decision_points;
 mod far_effect;
 mod far_residual;
 mod likeliest_point;
+mod plan_nodes;
+mod refuted_limit;
 mod residual_error;
 mod unseen_share;
 
@@ -26,6 +28,7 @@ pub(crate) use crate::estimate::{SampleQuantile, WeightedSample, variance_shares
 pub use crate::verification::check_ray::MOST_LOCATING;
 pub use crate::verification::costly_model::{Checked, CheckedFigures, Target, check_points, verify_by_checks};
 pub use crate::verification::far_residual::FarResidual;
+pub use crate::verification::plan_nodes::PlanNode;
 pub(crate) use crate::verification::residual_error::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
 pub(crate) use crate::verification::unseen_share::CONFIDENCE;
 pub use crate::verification::unseen_share::unseen;

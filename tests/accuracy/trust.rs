@@ -132,7 +132,7 @@ fn a_dozen_points_cover_the_figures_of_a_surface() {
                 .map(|one| one.linear.iter().zip(&one.curvature).map(|(linear, curved)| linear + curved).collect())
                 .collect();
             let targets: Vec<Target<'_>> = (outcome.fitted.iter().zip(&shares))
-                .map(|(fitted, shares)| Target { surrogate: fitted.surrogate.as_ref(), shares })
+                .map(|(fitted, shares)| Target { surrogate: fitted.surrogate.as_ref(), shares, nodes: &[] })
                 .collect();
             for seed in [1, 2] {
                 let run = Run::to_the_end();

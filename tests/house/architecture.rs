@@ -23,8 +23,9 @@ const LAYERS: &[(&str, &[&[&str]])] = &[
         "engine",
         &[
             &["error"],
-            &["compare", "rare", "sweep", "allocation", "lot"],
+            &["compare", "sweep", "allocation", "lot"],
             &["analysis", "probe"],
+            &["rare"],
             &["simulation"],
             &["extremes"],
             &["method"],

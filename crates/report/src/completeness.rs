@@ -73,7 +73,7 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
         left_out_share: "/left_out_share", indices: "/sobol",
     });
     complete!(json, &one.evidence => Evidence {
-        sampled: "/surrogate_sampling", model_sampled: "/model_sampling", verification: "/verification", surface_law: "/surface_law",
+        sampled: "/surrogate_sampling", model_sampled: "/model_sampling", tail_sampled: "/tail_sampling", verification: "/verification", surface_law: "/surface_law",
         density: "", residual: "/least_squares", law: "/distribution", pearson: "/pearson_fit", normal: "/normal_fit",
         sampling: "/sampling_interval",
     });

@@ -3,7 +3,7 @@
 //! | source | condition | error |
 //! |---|---|---|
 //! | proof | nothing varies; or no input is measured, and the extremes are proven to keep the limits, or the formula's degree proves that the surface is the function, and the distribution of the surface is exact | that of the distribution |
-//! | samples | points of the model itself, with the surface distribution as control variate if there is one | the sample's |
+//! | samples | points of the model itself, with the surface distribution as control variate if there is one; importance samples in a refuted tail | the sample's |
 //! | surface law | a surface, verified at check points or not at all; a proven surface of measured inputs | distribution and checks as the root of the sum of squares; without checks, the change of the tails by the errors of the moments |
 //! | Pearson fit | only moments are known | change by the errors of the moments |
 //!
@@ -420,6 +420,11 @@ fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
         let error = |side: usize| Some(one_error(sampled.beyond[side]?, sampled.intervals[side]?));
         let (error, errors) = (Some(one_error(value, interval)), [error(0), error(1)]);
         return Some(Rejected { source, beyond: sampled.beyond, error, errors, intervals: sampled.intervals });
+    }
+    if let Some(tail) = &one.evidence.tail_sampled {
+        let error = |side: usize| Some(one_error(tail.beyond[side]?, tail.intervals[side]?));
+        let (error, errors) = (Some(one_error(tail.yield_, tail.interval)), [error(0), error(1)]);
+        return Some(Rejected { source, beyond: tail.beyond, error, errors, intervals: tail.intervals });
     }
     let verification = one.evidence.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample)?;
     let (own, point) = (verification.yield_?, verification.point);

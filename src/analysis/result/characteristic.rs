@@ -138,7 +138,11 @@ impl CharacteristicAnalysis {
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
         let value = self.distribution.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
-        let around = verdict::about(value, error)?;
+        // Importance samples have an interval that is no multiple of an error.
+        let around = match &self.evidence.tail_sampled {
+            Some(tail) => tail.interval,
+            None => verdict::about(value, error)?,
+        };
         let around = match &self.evidence.sampling {
             Some(measured) => {
                 measured.rejected.map(|[low, high]| verdict::joined(value, around, [1.0 - high, 1.0 - low]))?
@@ -350,6 +354,7 @@ impl CharacteristicAnalysis {
             evidence: Evidence {
                 sampled,
                 model_sampled: None,
+                tail_sampled: None,
                 verification: None,
                 surface_law: None,
                 density: None,

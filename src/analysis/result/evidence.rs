@@ -4,6 +4,7 @@ use serde::{Serialize, Serializer};
 
 use crate::analysis::distribution::surface_law::SurfaceShares;
 use crate::analysis::result::sampled_model::SampledModel;
+use crate::analysis::result::sampled_tail::SampledTail;
 use crate::analysis::result::verification::Verification;
 use crate::method::Residual;
 use sensitol_numeric::capability::{Capability, Law};
@@ -22,6 +23,9 @@ pub struct Evidence {
     /// Points of the model from which the moments follow, in place of a surrogate that was not trusted.
     #[serde(rename = "model_sampling")]
     pub model_sampled: Option<SampledModel>,
+    /// Points of the model from which the yield follows, in tails at whose limits check points refute the surface.
+    #[serde(rename = "tail_sampling")]
+    pub tail_sampled: Option<SampledTail>,
     /// Verification of these results by the model itself. None if they were not verified.
     #[cfg_attr(
         feature = "schema",
@@ -59,7 +63,7 @@ pub struct Evidence {
 }
 
 rescale!(Evidence { sampled, model_sampled, verification, surface_law, residual, law, sampling } without {
-    density, pearson, normal,
+    density, pearson, normal, tail_sampled,
 });
 
 /// Serializes the distribution that has the moments; null if there is none.

@@ -15,6 +15,7 @@ pub(in crate::analysis) mod points_to_decide;
 pub(in crate::analysis) mod quantile_estimates;
 pub(in crate::analysis) mod range_figures;
 pub(in crate::analysis) mod sampled_model;
+pub(in crate::analysis) mod sampled_tail;
 pub(in crate::analysis) mod serialisation;
 pub(in crate::analysis) mod sobol_indices;
 pub(in crate::analysis) mod variance_share;

@@ -14,4 +14,5 @@ pub(in crate::analysis) mod recorded_points;
 pub(in crate::analysis) mod resample_interval;
 pub(in crate::analysis) mod sample_budget;
 pub(in crate::analysis) mod surface_trust;
+pub(in crate::analysis) mod tail_sample;
 pub(in crate::analysis) mod verification_stage;

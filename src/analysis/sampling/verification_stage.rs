@@ -14,11 +14,14 @@ use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::assembly::Run;
 use crate::evaluation::{Evaluator, Ledger};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Outcome, interpolated};
+use crate::plan::{AtNode, Point};
 use crate::problem::Problem;
+use crate::rare::RefutedTail;
 use crate::summary::RunSummary;
 use crate::verification::{
-    BESIDE, Checked, CheckedFigures, SampleQuantile, SampledFigures, Target, Verified, check_points, core_within,
-    most_points, most_points_of_shares, unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
+    BESIDE, Checked, CheckedFigures, PlanNode, SampleQuantile, SampledFigures, Target, Verified, check_points,
+    core_within, most_points, most_points_of_shares, unexplained, variance_shares_during, verify_by_checks,
+    verify_characteristic,
 };
 use crate::warning::Warning;
 use sensitol_numeric::capability::{Capability, Law};
@@ -45,21 +48,21 @@ const ORDINARY: f64 = 0.01;
 const ROUNDINGS: f64 = 8.0;
 
 /// Verifies every characteristic, unless that is switched off (see [`Options::verifies`]). Points of a costly model enter the ledger, those
-/// of a cheap one use up `left`.
+/// of a cheap one use up `left`. Returns the tails in which check points refute a surface.
 pub(in crate::analysis) fn verify(
     evaluator: &Evaluator<'_>,
     outcome: &Outcome,
     options: &Options,
     (kinked, left): (&[usize], &mut SampleBudget),
     characteristics: &mut [CharacteristicAnalysis],
-) {
+) -> Vec<RefutedTail> {
     let (problem, run, seed) = (evaluator.problem(), evaluator.run(), evaluator.seed());
     let costly = problem.function().signature().costly;
     if !options.verifies(problem.function().signature())
         || outcome.evaluated.stopped().is_some()
         || costly && run.stopped()
     {
-        return;
+        return Vec::new();
     }
     // Points of the model have replaced a surface with a kink at the nominal point. Their errors need no surface.
     let replaced = |c: usize, one: &CharacteristicAnalysis| kinked.contains(&c) && one.evidence.model_sampled.is_some();
@@ -67,14 +70,13 @@ pub(in crate::analysis) fn verify(
         .filter(|&c| !replaced(c, &characteristics[c]) && !proven(outcome, c, &mut characteristics[c]))
         .collect();
     if open.is_empty() {
-        return;
+        return Vec::new();
     }
     // A budget that is too small for a sample of each characteristic may suffice for check points.
     let each = left.each(open.len());
     let cores: Option<Vec<usize>> = open.iter().map(|&c| core_within(problem, c, each)).collect();
     let Some(cores) = cores.filter(|_| !costly) else {
-        check(evaluator, outcome, options.verify, &open, characteristics);
-        return;
+        return check(evaluator, outcome, options.verify, &open, characteristics);
     };
     // A long formula takes a while for each of some 45 000 points. Characteristics that are not reached in time have no verification, and
     // the report states it.
@@ -86,6 +88,7 @@ pub(in crate::analysis) fn verify(
     left.spend(spent.iter().flatten().sum());
     let stopped = spent.contains(&None).then(|| run.why_open());
     evaluator.merge(Ledger::stopped_by(stopped));
+    Vec::new()
 }
 
 /// True if the surface is proven to equal the function. Its errors are roundings then.
@@ -275,14 +278,15 @@ fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
     true
 }
 
-/// Verifies the `open` characteristics of a costly model at check points, `asked` if they were asked for by number.
+/// Verifies the `open` characteristics of a costly model at check points, `asked` if they were asked for by number. Returns the tails in
+/// which they refute a surface.
 fn check(
     evaluator: &Evaluator<'_>,
     outcome: &Outcome,
     asked: Option<usize>,
     open: &[usize],
     characteristics: &mut [CharacteristicAnalysis],
-) {
+) -> Vec<RefutedTail> {
     let varying = outcome.plan.varying();
     let integrated: Vec<Option<Surrogate>> = (0..characteristics.len()).map(|c| interpolated(outcome, c)).collect();
     let surface = |c: usize| outcome.fitted[c].surrogate.as_ref().or(integrated[c].as_ref());
@@ -291,8 +295,9 @@ fn check(
         varying.iter().map(|&d| one.share(d).unwrap_or(unknown)).collect()
     };
     let shares: Vec<Vec<f64>> = characteristics.iter().zip(&integrated).map(shares).collect();
-    let targets: Vec<Target<'_>> = (shares.iter().enumerate())
-        .map(|(c, shares)| Target { surrogate: surface(c).filter(|_| open.contains(&c)), shares })
+    let nodes: Vec<Vec<PlanNode>> = (0..characteristics.len()).map(|c| plan_nodes(outcome, c)).collect();
+    let targets: Vec<Target<'_>> = (shares.iter().zip(&nodes).enumerate())
+        .map(|(c, (shares, nodes))| Target { surrogate: surface(c).filter(|_| open.contains(&c)), shares, nodes })
         .collect();
     let most = check_points(asked, varying.len());
     // A number that was asked for is kept. Within it, and without one, a refuted surface takes up to `MOST_LOCATING` points more.
@@ -301,17 +306,41 @@ fn check(
         (None, left) => left,
     };
     let part = evaluator.part().with_budget(budget);
-    let Some(checked) = verify_by_checks(&part, varying, &targets, most) else { return };
+    let Some(checked) = verify_by_checks(&part, varying, &targets, most) else { return Vec::new() };
+    let mut refuted = Vec::new();
     for &c in open {
         // Points without an answer give no information.
         if !checked.unanswered[c] {
             let exact = surface(c).and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));
             judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
+            let points = checked.characteristics[c].refuted.clone();
+            refuted.extend(points.map(|points| RefutedTail { characteristic: c, points }));
         }
     }
     let ledger = part.into_ledger();
     // Open check points leave the figures of the method complete.
     evaluator.merge(Ledger { run: RunSummary { stopped: None, ..ledger.run }, ..ledger });
+    refuted
+}
+
+/// Points of the plan without a value of a characteristic, and those of a single input. None if all have a value.
+fn plan_nodes(outcome: &Outcome, c: usize) -> Vec<PlanNode> {
+    let (plan, known) = (&outcome.plan, &outcome.evaluated.known);
+    let varying = plan.varying();
+    let node = |point: &Point, has_value: bool| {
+        let place = |at: &AtNode| {
+            let d = at.dimension as usize;
+            Some((varying.binary_search(&d).ok()?, plan.axis(d).nodes[at.node as usize].u))
+        };
+        Some(PlanNode::new(point.at().iter().map(place).collect::<Option<Vec<_>>>()?, has_value))
+    };
+    let failed: Vec<PlanNode> =
+        known.errors().filter(|(_, of, _)| *of == c).filter_map(|(point, ..)| node(point, false)).collect();
+    if failed.is_empty() {
+        return failed;
+    }
+    let single = known.points().iter().filter(|point| point.at().len() == 1 && known.value(point, c).is_some());
+    failed.into_iter().chain(single.filter_map(|point| node(point, true))).collect()
 }
 
 /// Derives the errors of a method's figures: the error of the surface, and the difference between method and surface.

@@ -11,6 +11,7 @@ use crate::files::Files;
 use crate::output::{Look, json};
 use crate::own_file::Content;
 use crate::{points, study};
+use sensitol::analysis::most_tail_points;
 use sensitol::method::{DerivativeSource, ReducedInputs};
 use sensitol::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use sensitol::problem::Problem;
@@ -48,6 +49,8 @@ pub(crate) struct PlanReport {
     /// The check points that verify it in the end, placed by the answers, at most; null where the model is sampled instead, and 0
     /// where nothing is verified.
     checks: Option<usize>,
+    /// Further points of the model in tails at whose limits check points refute the surface, at most; 0 where there are none.
+    tail_points: usize,
     /// Evaluations that replay answers of an external program in fresh processes, at most; 0 for other models.
     replays: usize,
     /// Whether a search of the extremes follows, whose points are not known beforehand.
@@ -128,11 +131,12 @@ pub(crate) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
             true => (study.problem.function().signature().costly)
                 .then(|| check_points(study.options.verify, plan.varying().len())),
         },
+        tail_points: most_tail_points(&study.problem, &study.options, evaluations),
         replays: 0,
         extremes: study.options.extremes,
         dimensions: plan.varying().iter().map(|&d| axis(problem, &*plan, d)).collect(),
     };
-    let answers = report.range.map_or(evaluations, |[_, most]| most) + report.checks.unwrap_or(0);
+    let answers = report.range.map_or(evaluations, |[_, most]| most) + report.checks.unwrap_or(0) + report.tail_points;
     report.replays = study.problem.function().own_checks(answers);
     if stages > 1 {
         let left = evaluations - of_first;
@@ -223,6 +227,12 @@ impl PlanReport {
         }
         if let Some(checks) = self.checks.filter(|&checks| checks > 0) {
             document.line(format!("then up to {checks} check points, placed by the answers, that verify the results"));
+        }
+        if self.tail_points > 0 {
+            document.line(format!(
+                "and, only where they refute the surface at a limit, up to {} points of the model in that tail",
+                self.tail_points
+            ));
         }
         if self.replays > 0 {
             document.line(format!("and up to {} evaluations that replay answers in fresh processes", self.replays));

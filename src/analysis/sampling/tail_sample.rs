@@ -1,0 +1,87 @@
+//! Yield of `auto` where check points refute the surface at a limit: importance samples of the model about the place.
+
+use crate::analysis::sampling::accuracy_target::beside_sigma;
+use crate::analysis::{CharacteristicAnalysis, SampledTail};
+use crate::evaluation::{Evaluator, Ledger};
+use crate::method::{DerivativeSource, Method, Options, Outcome};
+use crate::problem::Problem;
+use crate::rare::{Beyond, MOST_TAIL_POINTS, RareCharacteristic, RefutedTail, sample_refuted};
+use crate::summary::RunSummary;
+use crate::warning::Figure;
+use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::verdict::Verdict;
+
+/// Most points within a budget: as many as `simulate` takes for rare events of an external program.
+const MOST: usize = 1000;
+
+/// Most points of the model in tails that check points refute, after `spent` evaluations: none but for `auto` of a costly model with limits,
+/// whose number of check points is not asked for.
+pub fn most_tail_points(problem: &Problem, options: &Options, spent: usize) -> usize {
+    let signature = problem.function().signature();
+    let limited = problem.characteristics().iter().any(|one| one.limits().exist());
+    let verified = signature.costly && options.verify.is_none() && options.verifies(signature);
+    let asked = options.method == Method::Auto && options.derivatives != Some(DerivativeSource::Exact);
+    match asked && limited && verified {
+        true => options.budget.map_or(MOST_TAIL_POINTS, |budget| budget.saturating_sub(spent).min(MOST)),
+        false => 0,
+    }
+}
+
+/// Decides the yields whose surfaces are refuted by points of the model, within the budget, and without one by at most
+/// [`MOST_TAIL_POINTS`]. Nothing is evaluated for any other method, with a number of check points that was asked for, and where the interval
+/// of the check points suffices for the target or the wanted accuracy.
+pub(in crate::analysis) fn decide(
+    evaluator: &Evaluator<'_>,
+    outcome: &Outcome,
+    options: &Options,
+    refuted: &[RefutedTail],
+    characteristics: &mut [CharacteristicAnalysis],
+) {
+    let spent = outcome.evaluated.ledger.evaluations();
+    let most = most_tail_points(evaluator.problem(), options, spent).min(evaluator.remaining().unwrap_or(usize::MAX));
+    if most == 0 || evaluator.run().stopped() {
+        return;
+    }
+    let is_open = |tail: &&RefutedTail| is_open(&characteristics[tail.characteristic], options);
+    let open: Vec<RefutedTail> = refuted.iter().filter(is_open).cloned().collect();
+    let Some(found) = sample_refuted(evaluator, outcome, &open, most as u64) else { return };
+    for (c, one) in &found.characteristics {
+        take(&mut characteristics[*c], one, found.points);
+    }
+    evaluator.merge(Ledger { run: RunSummary { stopped: None, ..found.ledger.run }, ..found.ledger });
+}
+
+/// True if the check points leave a yield open: its target is not decided, and its wanted accuracy is not reached.
+fn is_open(one: &CharacteristicAnalysis, options: &Options) -> bool {
+    let sampled = one.evidence.model_sampled.is_some();
+    let decided = one
+        .characteristic
+        .target_yield()
+        .is_some_and(|target| matches!(one.judge(Requirement::Yield(target)).verdict, Verdict::Met | Verdict::Missed));
+    let wanted = beside_sigma(one, &options.accuracies).into_iter().find(|(figure, ..)| *figure == Figure::Yield);
+    !sampled && !decided && wanted.is_none_or(|(_, error, wanted)| error > wanted)
+}
+
+/// Takes the shares of a sample. A side without a reject has that of the surface, as far as its interval allows.
+fn take(one: &mut CharacteristicAnalysis, found: &RareCharacteristic, points: u64) {
+    let Some(interval) = found.yield_interval else { return };
+    let law = one.distribution.capability;
+    let of_law = [law.and_then(|of| of.below), law.and_then(|of| of.above)];
+    let share = |beyond: &Option<Beyond>, of_law: Option<f64>| {
+        let beyond = beyond.as_ref()?;
+        let [low, high] = beyond.interval;
+        beyond.probability.map(|of| of.value).or(of_law.map(|share| share.clamp(low, high))).or(Some(0.5 * high))
+    };
+    let beyond = [share(&found.below, of_law[0]), share(&found.above, of_law[1])];
+    let intervals = [&found.below, &found.above].map(|beyond| beyond.as_ref().map(|beyond| beyond.interval));
+    let yield_ = (1.0 - beyond.iter().flatten().sum::<f64>()).clamp(0.0, 1.0);
+    let without: f64 = [&found.below, &found.above].into_iter().flatten().map(|of| of.bounds[1] - of.bounds[0]).sum();
+    one.missing.without_value += found.failed as usize;
+    if let Some(verification) = &mut one.evidence.verification
+        && found.failed > 0
+    {
+        // Points in the tail weigh the assemblies without a value.
+        verification.lost_share = verification.lost_share.map(|lost| lost.max(without));
+    }
+    one.evidence.tail_sampled = Some(SampledTail { points, failed: found.failed, yield_, interval, beyond, intervals });
+}
