@@ -13,6 +13,7 @@ mod warnings;
 use std::cell::OnceCell;
 
 use crate::analysis::distribution::conditional;
+use crate::analysis::distribution::distribution_free::distribution_free;
 pub use crate::analysis::distribution::law_guard::{LawRefutation, LawTest};
 pub use crate::analysis::distribution::moment_basis::{Fit, NoFit, Surface};
 pub use crate::analysis::distribution::surface_law::SurfaceShares;
@@ -23,6 +24,7 @@ pub use crate::analysis::result::characteristic::{CharacteristicAnalysis, Missin
 pub use crate::analysis::result::contribution_figures::ContributionFigures;
 pub use crate::analysis::result::coverage_intervals::CoverageIntervals;
 pub use crate::analysis::result::distribution_figures::DistributionFigures;
+pub use crate::analysis::result::distribution_free_yield::DistributionFreeYield;
 pub use crate::analysis::result::evidence::Evidence;
 pub use crate::analysis::result::figure_basis::{FigureBases, FigureBasis};
 pub use crate::analysis::result::interaction::{Interaction, InteractionList, Missing};
@@ -276,6 +278,11 @@ pub(crate) fn analyze_keeping(
     // The list needs much memory with many inputs: it is made after the distributions were dropped.
     for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
         one.contributions.interactions = interaction_listing::listed(problem, &outcome, c, shares.as_ref());
+    }
+    for (c, one) in characteristics.iter_mut().enumerate() {
+        if let Some(free) = distribution_free(problem, &outcome, options, &mut left, (c, one)) {
+            one.bound_yield(free);
+        }
     }
     let joint = (options.target_joint_yield)
         .and_then(|_| yield_selection::joint(problem, options, &mut left, &characteristics, &laws));

@@ -15,6 +15,7 @@
 //! | `variance_shares` | Sobol' indices by exchanging inputs | verification, analysis, simulation |
 //! | `inspection` | risks of an inspection, from points of which the value is known | analysis, simulation |
 //! | `conditional_yield` | yield of the assemblies that keep another characteristic's limits | analysis, simulation |
+//! | `yield_at_values` | yield at given values of one dimension | analysis |
 //! | `output_correlation` | correlation of characteristics, and their common rejects | analysis, simulation |
 //!
 //! Nothing here asks a costly model. An estimator takes a problem, or values with their weights. None depends on methods or results.
@@ -36,6 +37,7 @@ mod tails;
 pub(crate) mod variance_shares;
 mod verified;
 mod weighted_sample;
+mod yield_at_values;
 
 pub use crate::estimate::conditional_yield::ConditionalYield;
 pub(crate) use crate::estimate::conditional_yield::conditions;
@@ -57,3 +59,4 @@ pub use crate::estimate::variance_shares::{Share, variance_shares};
 pub(crate) use crate::estimate::variance_shares::{factor_shares, variance_shares_during};
 pub use crate::estimate::verified::Verified;
 pub(crate) use crate::estimate::weighted_sample::WeightedSample;
+pub(crate) use crate::estimate::yield_at_values::{most_points_at, yields_at};

@@ -8,7 +8,7 @@ use crate::assembly::Points;
 use crate::problem::Problem;
 use sensitol_numeric::correlation::{Together, Transform};
 use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw, Probability, ScoreTable, behind_normal};
-use sensitol_numeric::sampling::SamplingError;
+use sensitol_numeric::sampling::{SamplingError, all_known};
 
 /// Ends of normal variables, in sigmas.
 const BEHIND: [f64; 2] = [-9.0, 9.0];
@@ -57,6 +57,7 @@ impl<'p> NormalSpace<'p> {
     /// Creates the space of these dimensions, which vary, without an end of the tails. Points of the model are exact, which costs a quantile
     /// function each.
     pub(crate) fn with_far_tails(problem: &'p Problem, dimensions: &[usize]) -> Result<Self, SamplingError> {
+        all_known(problem.dimensions())?;
         let law = |&d: &usize| {
             let dimension = &problem.dimensions()[d];
             let law = dimension.distribution().and_then(Law::with_far_tails);

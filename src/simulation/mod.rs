@@ -49,7 +49,7 @@ use sensitol_numeric::json_form::through;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::parallel::{Rooms, join};
 use sensitol_numeric::power::{Rescale, Rescaling};
-use sensitol_numeric::sampling::{Draws, Portion, Room};
+use sensitol_numeric::sampling::{Draws, Portion, Room, all_known};
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::Judged;
 pub(crate) use surrogates::{KnownSurrogate, Surrogates, chosen};
@@ -371,6 +371,7 @@ fn simulated(
         indices::affordable(problem, points, options.budget)?;
     }
     let begun = Instant::now();
+    all_known(problem.dimensions())?;
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
     let control = options.control.as_ref().map(|asked| Control::of(problem, asked, options, run)).transpose()?;

@@ -13,7 +13,7 @@ use crate::simulation::shard_sums::{Shard, ShardError, ShardSums, ShardWork};
 use crate::simulation::tally::Tally;
 use crate::simulation::{MOST, Pace, Sample, Simulation, SimulationError, SimulationOptions, keep_rows};
 use crate::summary::RunSummary;
-use sensitol_numeric::sampling::{Draws, Room, Sampler};
+use sensitol_numeric::sampling::{Draws, Room, Sampler, all_known};
 use sensitol_numeric::time::Instant;
 
 impl Restore for ShardSums {
@@ -91,6 +91,7 @@ fn evaluated(
     pace: &dyn Fn(Pace),
 ) -> Result<ShardSums, ShardError> {
     let begun = Instant::now();
+    all_known(problem.dimensions()).map_err(SimulationError::from)?;
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)
         .map_err(SimulationError::from)?;
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;

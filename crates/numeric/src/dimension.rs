@@ -45,6 +45,21 @@ pub struct Convention {
     pub degrees: Option<f64>,
     /// Lots of the process. None if they follow from the distribution.
     pub lot: Option<Lot>,
+    /// Facts of a distribution that is not known otherwise. The dimension's own distribution only stands in for it then.
+    pub promise: Option<BandPromise>,
+}
+
+/// Facts of an unknown distribution within the tolerance band, in half bands from its middle.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BandPromise {
+    /// Range of the mean. None if it can lie anywhere in the band.
+    pub mean: Option<[f64; 2]>,
+    /// Greatest standard deviation. None if only the band bounds it.
+    pub sigma: Option<f64>,
+    /// True if the distribution is symmetric about the middle.
+    pub symmetric: bool,
+    /// True if the density of a symmetric distribution falls on either side of the middle.
+    pub unimodal: bool,
 }
 
 /// Distribution of the parts in one lot of a process.

@@ -21,6 +21,7 @@
 //! | `exponential`, `rayleigh` | nominal plus `shift`; sigma follows from mean and origin | `origin` |
 //! | `mixture` | follow from the parts | `parts`: tables by name |
 //! | `tabulated` | follow from the table | `scores`, `values`: quantiles over normal scores, both ascending; between them a monotone cubic of the score |
+//! | `any` | unknown: yields are bounded over all distributions within the band, other figures take a uniform one | `mean` (least and greatest), `sigma_at_most`, `symmetric`, `unimodal` |
 //! | `split-normal` | follow from both sigmas about the nominal plus `shift` | `below`, `above`: the sigmas of both sides, or each deviation by `sigmas` (3) |
 //! | `gumbel-largest`, `gumbel-smallest` | as those of `normal` | |
 //!

@@ -16,7 +16,7 @@ use crate::evaluation::at_any_size;
 use crate::problem::Problem;
 use crate::simulation::SimulationError;
 use crate::summary::RunSummary;
-use sensitol_numeric::sampling::{Draws, Sampler};
+use sensitol_numeric::sampling::{Draws, Sampler, all_known};
 use sensitol_numeric::time::Instant;
 
 /// Allocates tolerances once, with the choices of the task as they are.
@@ -27,6 +27,7 @@ pub(in crate::allocation) fn allocate_once(
     run: &Run<'_>,
     written: Option<AsWritten<'_>>,
 ) -> Result<Allocation, AllocateError> {
+    all_known(problem.dimensions()).map_err(SimulationError::from)?;
     if options.confirm.is_some() {
         Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, options.seed)
             .map_err(SimulationError::from)?;

@@ -3,6 +3,7 @@
 pub(in crate::analysis) mod conditional;
 pub(in crate::analysis) mod counted_surface;
 pub(in crate::analysis) mod coverage;
+pub(in crate::analysis) mod distribution_free;
 pub(in crate::analysis) mod inspection;
 pub(in crate::analysis) mod law_guard;
 pub(in crate::analysis) mod moment_basis;

@@ -301,7 +301,7 @@ pub(crate) fn law_over(
 }
 
 /// A surface and the distributions of its inputs, with an unexplained variance as a further input.
-fn surface(
+pub(in crate::analysis) fn surface(
     problem: &Problem,
     outcome: &Outcome,
     c: usize,

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::analysis::result::contribution_figures::ContributionFigures;
 use crate::analysis::result::distribution_figures::DistributionFigures;
+use crate::analysis::result::distribution_free_yield::DistributionFreeYield;
 use crate::analysis::result::evidence::Evidence;
 use crate::analysis::result::interaction_listing::{dimensions_of, mixed_of, pairs_of, share_of};
 use crate::analysis::result::linear::Linear;
@@ -136,6 +137,9 @@ impl CharacteristicAnalysis {
     /// Interval of the yield: the estimate and two of its errors, with the uncertainty of measured samples. It extends down to 0 if there
     /// are assemblies without a value that were not counted. Returns None if an error is unknown.
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
+        if let Some(free) = &self.distribution.distribution_free_yield {
+            return free.interval;
+        }
         let value = self.distribution.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
         // Importance samples have an interval that is no multiple of an error.
@@ -168,6 +172,22 @@ impl CharacteristicAnalysis {
             None => located,
         };
         Some(verdict::share(verdict::losing(around, lost)))
+    }
+
+    /// Replaces the yield by bounds over all distributions of some dimensions. That of the distributions that stand in for them says nothing.
+    pub(in crate::analysis) fn bound_yield(&mut self, free: DistributionFreeYield) {
+        let known = self.distribution.capability.take();
+        self.distribution = DistributionFigures {
+            yield_source: None,
+            capability: known.map(|of| Capability { below: None, above: None, ..of }),
+            reject_intervals: [None; 2],
+            inspection: None,
+            distribution_free_yield: Some(free),
+            ..self.distribution.clone()
+        };
+        if let Some(estimate) = &mut self.error_estimate {
+            estimate.yield_ = None;
+        }
     }
 
     /// Leaves out the slopes and the figures of a linear model, which do not exist where values are chosen from stock: difference quotients
@@ -204,6 +224,14 @@ impl CharacteristicAnalysis {
                 None => own,
             };
         let (value, interval) = match requirement {
+            // The worst distribution decides, not the one that stands in for it.
+            Requirement::Yield(_) if let Some(free) = &self.distribution.distribution_free_yield => {
+                (free.interval.map(|[least, _]| least), free.interval)
+            }
+            // They depend on the distribution that is not known.
+            Requirement::Cpk(_) | Requirement::Sigma(_) if self.distribution.distribution_free_yield.is_some() => {
+                (None, None)
+            }
             // The target is that of the assemblies that count.
             Requirement::Yield(_) if self.characteristic.given().is_some() => {
                 let known = self.distribution.conditional.as_ref();

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::analysis::result::coverage_intervals::CoverageIntervals;
+use crate::analysis::result::distribution_free_yield::DistributionFreeYield;
 use crate::analysis::result::quantile_estimates::QuantileEstimates;
 use crate::analysis::result::yield_source::YieldSource;
 use crate::estimate::ConditionalYield;
@@ -34,6 +35,8 @@ pub struct DistributionFigures {
     /// unknown.
     #[serde(rename = "conditional_yield")]
     pub conditional: Option<ConditionalYield>,
+    /// Yield over all distributions of dimensions of which only the band is promised. None if there is none.
+    pub distribution_free_yield: Option<DistributionFreeYield>,
     /// Risks of the inspection. None if there is no gauge.
     pub inspection: Option<InspectionRisks>,
 }
@@ -48,9 +51,10 @@ impl DistributionFigures {
             quantiles: None,
             coverage: None,
             conditional: None,
+            distribution_free_yield: None,
             inspection: None,
         }
     }
 }
 
-rescale!(DistributionFigures { quantiles, coverage, inspection } without { yield_source, capability, reject_intervals, conditional });
+rescale!(DistributionFigures { quantiles, coverage, inspection } without { yield_source, capability, reject_intervals, conditional, distribution_free_yield });

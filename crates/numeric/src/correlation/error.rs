@@ -40,6 +40,12 @@ pub enum Refusal {
         /// Name of the dimension without a distribution.
         name: String,
     },
+    /// A dimension of the pair may have any distribution.
+    #[error("`{name}` may have any distribution; a correlation needs a known one")]
+    AnyDistribution {
+        /// Name of the dimension.
+        name: String,
+    },
     /// The pair names one dimension twice.
     #[error("`{name}` stands at both ends; a correlation is between two dimensions")]
     WithItself {

@@ -286,6 +286,9 @@ fn resolved(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Vec<([usize; 2],
                 Some(law) if law.probability().is_none() => {
                     return Err(refused(Refusal::MomentsOnly { name: name() }));
                 }
+                Some(_) if dimensions[position].convention().promise.is_some() => {
+                    return Err(refused(Refusal::AnyDistribution { name: name() }));
+                }
                 Some(_) => *end = position,
             }
         }

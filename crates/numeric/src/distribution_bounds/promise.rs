@@ -1,5 +1,7 @@
 //! Facts about a distribution that is not known otherwise.
 
+use crate::dimension::{BandPromise, Dimension};
+
 /// Band of an input, and what else is promised of its distribution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistributionPromise {
@@ -105,6 +107,79 @@ impl DistributionPromise {
             true => Err(PromiseFault::Symmetric { middle }),
             false => Ok(self),
         }
+    }
+
+    /// Promise of a dimension, in its unit. Returns None if its distribution is known.
+    ///
+    /// # Errors
+    /// If the promise contradicts itself.
+    pub fn of(dimension: &Dimension) -> Option<Result<Self, PromiseFault>> {
+        let band = dimension.reach().map(|deviation| dimension.nominal() + deviation);
+        Some(Self::over(band, &dimension.convention().promise?))
+    }
+
+    /// Promise over a band, from facts in half bands.
+    ///
+    /// # Errors
+    /// If the band is empty, or if the facts contradict each other.
+    pub fn over(band: [f64; 2], facts: &BandPromise) -> Result<Self, PromiseFault> {
+        let mut promise = Self::new(band)?;
+        let (middle, half) = (promise.middle(), 0.5 * (band[1] - band[0]));
+        if let Some(mean) = facts.mean {
+            let [low, high] = mean.map(|of| (middle + of * half).clamp(band[0], band[1]));
+            promise = promise.with_mean([low, high])?;
+        }
+        if let Some(sigma) = facts.sigma {
+            promise = promise.with_sigma(sigma * half)?;
+        }
+        match (facts.symmetric, facts.unimodal) {
+            (_, true) => promise.symmetric_and_unimodal(),
+            (true, false) => promise.symmetric(),
+            (false, false) => Ok(promise),
+        }
+    }
+
+    /// Promise of a sum of independent inputs, each times a slope that is not 0.
+    ///
+    /// Bands and ranges of means are added, and sigmas as the root of the sum of squares. A sum is symmetric if all inputs are, and unimodal
+    /// if all are symmetric and unimodal (Wintner 1938). Distributions other than sums keep this promise too, unless there is one input or
+    /// bands alone are promised: the bounds of the yield hold, but need not be attained.
+    ///
+    /// # Errors
+    /// If there is no input.
+    pub fn of_sum(inputs: &[(f64, Self)]) -> Result<Self, PromiseFault> {
+        let ends = |slope: f64, [low, high]: [f64; 2]| {
+            if slope < 0.0 { [slope * high, slope * low] } else { [slope * low, slope * high] }
+        };
+        let (mut band, mut means, mut variance) = ([0.0; 2], [0.0; 2], Some(0.0));
+        for (slope, input) in inputs {
+            for (sum, end) in band.iter_mut().zip(ends(*slope, input.band)) {
+                *sum += end;
+            }
+            for (sum, end) in means.iter_mut().zip(ends(*slope, input.means())) {
+                *sum += end;
+            }
+            variance = variance.zip(input.sigma).map(|(sum, sigma)| sum + (slope * sigma).powi(2));
+        }
+        let sum = Self::new(band)?;
+        let symmetric = inputs.iter().all(|(_, input)| input.symmetric);
+        Ok(Self {
+            mean: (!symmetric && inputs.iter().any(|(_, input)| input.mean.is_some())).then_some(means),
+            sigma: variance.map(f64::sqrt),
+            symmetric,
+            unimodal: inputs.iter().all(|(_, input)| input.unimodal),
+            ..sum
+        })
+    }
+
+    /// True if nothing but the band is promised.
+    pub fn is_band_alone(&self) -> bool {
+        self.mean.is_none() && self.sigma.is_none() && !self.symmetric
+    }
+
+    /// Least and greatest value.
+    pub fn band(&self) -> [f64; 2] {
+        self.band
     }
 
     /// Middle of the band.

@@ -70,12 +70,32 @@ pub enum SamplingError {
         /// Name of the dimension.
         dimension: String,
     },
+    /// A dimension may have any distribution within its band.
+    #[error(
+        "dimension `{dimension}` may have any distribution within its band, and only an analysis bounds the yield over all of \
+         them: give it a distribution such as \"normal\" or \"uniform\""
+    )]
+    AnyDistribution {
+        /// Name of the dimension.
+        dimension: String,
+    },
     /// More dimensions vary than there are direction numbers for.
     #[error("{dimensions} dimensions vary, and there are Sobol' points for {SOBOL_DIMENSIONS}: use random ones")]
     TooManyDimensions {
         /// Number of dimensions that vary.
         dimensions: usize,
     },
+}
+
+/// Checks that every dimension has a distribution of its own.
+///
+/// # Errors
+/// Returns an error if a dimension may have any distribution within its band: a sample of the one that stands in for it answers nothing.
+pub fn all_known(dimensions: &[Dimension]) -> Result<(), SamplingError> {
+    match dimensions.iter().find(|dimension| dimension.convention().promise.is_some()) {
+        Some(dimension) => Err(SamplingError::AnyDistribution { dimension: dimension.name().to_owned() }),
+        None => Ok(()),
+    }
 }
 
 /// Range of points: replicate, first point, number of points.

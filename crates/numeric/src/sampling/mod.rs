@@ -18,7 +18,7 @@ mod summary;
 pub use crate::sampling::covariance::Joint;
 pub(crate) use critical::beta_quantile;
 pub use critical::student_quantile;
-pub use draws::{Draws, Portion, Sampler, SamplingError};
+pub use draws::{Draws, Portion, Sampler, SamplingError, all_known};
 pub use draws::{Room, tails};
 pub use estimate::weighted_interval;
 pub use estimate::{Estimate, FEWEST, clopper_pearson, of_moments, one_error, wilson};

@@ -6,7 +6,7 @@ use crate::analysis::range_bars as bars;
 use crate::analysis::stack::Stack;
 use crate::analysis::statistics::CharacteristicStatistics;
 use crate::analysis::statistics::{derivative, matters, part, size, total};
-use crate::analysis::yield_source::{ROUNDING, decision, pearson_fit, source};
+use crate::analysis::yield_source::{ROUNDING, decision, distribution_free, pearson_fit, source};
 use crate::document::number::{
     UNKNOWN, beside, carried, carried_ends, index, index_with, known, limits, percent, plain, plural, short,
     significant, within, yielded,
@@ -394,7 +394,11 @@ impl CharacteristicSections for CharacteristicAnalysis {
     }
 
     fn kept(&self, section: &mut Section) {
-        let shown = |rejects: Rejects| format!("yield {}", rejects.text().unwrap_or_else(|| "unknown".to_owned()));
+        let free = self.distribution.distribution_free_yield.as_ref();
+        let shown = |rejects: Rejects| match free {
+            Some(free) => format!("yield {}", distribution_free(free)),
+            None => format!("yield {}", rejects.text().unwrap_or_else(|| "unknown".to_owned())),
+        };
         let target = judged(self.target(), self.verdict());
         let reason = "too few assemblies keep it, or their share is unknown";
         let conditional = conditional(&self.characteristic, self.distribution.conditional.as_ref(), reason);
@@ -402,6 +406,10 @@ impl CharacteristicSections for CharacteristicAnalysis {
         // The target is that of the assemblies that count.
         section.note(if conditional.is_some() { plain } else { plain.and(target.clone()) });
         conditional.into_iter().for_each(|line| section.note(Line::from(line).and(target.clone())));
+        if let Some(free) = free {
+            let names: Vec<String> = free.dimensions.iter().map(|name| short(name)).collect();
+            section.note(format!("all other figures take {} as uniform", names.join(", ")));
+        }
         source(self).into_iter().for_each(|line| section.note(line));
         let named = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {}", index(value)));
         let of = |figure: fn(&Capability) -> Option<f64>| self.distribution.capability.as_ref().and_then(figure);

@@ -3,7 +3,7 @@
 use crate::Report;
 use crate::analysis::analysis_document::CharacteristicSections;
 use crate::analysis::statistics::{CharacteristicStatistics, strongest};
-use crate::analysis::yield_source::condition;
+use crate::analysis::yield_source::{condition, distribution_free};
 use crate::document::number::{plain, target_yield, yielded};
 use crate::document::rejects::UNKNOWN_YIELD;
 use crate::document::terminal::unbroken;
@@ -68,7 +68,8 @@ impl Report {
         let mut line = Line::from(one.name());
         if one.limited() {
             let known = one.rejects().yield_text().filter(|text| text != UNKNOWN_YIELD);
-            line = line.and(format!(" {}", known.as_deref().unwrap_or("yield unknown")));
+            let free = one.distribution.distribution_free_yield.as_ref().map(distribution_free);
+            line = line.and(format!(" {}", free.as_deref().or(known.as_deref()).unwrap_or("yield unknown")));
             if let Some(given) = one.characteristic.given() {
                 let of_those = one.distribution.conditional.as_ref().map_or("unknown".to_owned(), conditional_yield);
                 line = line.and(format!(", given {given} {of_those}"));

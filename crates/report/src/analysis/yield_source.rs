@@ -1,8 +1,8 @@
 //! Source of the yield, in words.
 
-use crate::document::number::{significant, unrejected};
+use crate::document::number::{plain, short, significant, unrejected};
 use crate::figures::Figures;
-use sensitol::analysis::{CharacteristicAnalysis, FigureBasis, YieldSource};
+use sensitol::analysis::{CharacteristicAnalysis, DistributionFreeYield, FigureBasis, YieldSource};
 use sensitol::summary::RunSummary;
 use sensitol_numeric::capability::Capability;
 
@@ -76,4 +76,23 @@ pub(crate) fn condition(one: &CharacteristicAnalysis) -> String {
         (Some(FigureBasis::Surface), None) => ", if the surface holds: no check point was evaluated".to_owned(),
         _ => String::new(),
     }
+}
+
+/// Bounds of a yield over all distributions of some dimensions. The ends are rounded outward, because each of them is a bound.
+pub(crate) fn distribution_free(of: &DistributionFreeYield) -> String {
+    let names: Vec<String> = of.dimensions.iter().map(|name| short(name)).collect();
+    let names = names.join(", ");
+    let Some([least, greatest]) = of.interval else {
+        return format!(
+            "unknown: the distribution of {names} is not given, and bounds need a linear formula or one such dimension"
+        );
+    };
+    /// Steps of a printed bound: a ten-thousandth of a percent.
+    const STEPS: f64 = 1e6;
+    let percent = |steps: f64| plain(steps / 1e4);
+    let least = percent((STEPS * least).floor());
+    let most =
+        if greatest < 1.0 { format!(", at most {} %", percent((STEPS * greatest).ceil())) } else { String::new() };
+    let checked = if of.basis == Some(FigureBasis::Points) { " (by points of the model)" } else { "" };
+    format!("at least {least} %{most}, whatever the distribution of {names}{checked}")
 }

@@ -53,7 +53,8 @@ pub(super) fn distribution(
         | Kind::UShaped
         | Kind::Octahedron
         | Kind::Bicone
-        | Kind::CurvilinearTrapezoid) => over_band(over, entry, nominal, tolerance),
+        | Kind::CurvilinearTrapezoid
+        | Kind::Any) => over_band(over, entry, nominal, tolerance),
         Kind::Student => student(entry, nominal, tolerance),
         Kind::Lognormal => {
             with_tail(entry, nominal, tolerance, |o, mean, sigma| shared(Lognormal::new(o, mean, sigma)))
@@ -107,7 +108,7 @@ fn kind(entry: &DimensionEntry) -> Result<Kind, Fault> {
 }
 
 /// Every parameter of the table `distribution`, with its place if it is given.
-fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 13] {
+fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 17] {
     let span = |parameter: &Option<Spanned<f64>>| parameter.as_ref().map(Spanned::span);
     [
         ("mode", span(&entry.mode)),
@@ -123,10 +124,14 @@ fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>
         ("parts", entry.parts.as_ref().map(Spanned::span)),
         ("scores", entry.scores.as_ref().map(Spanned::span)),
         ("values", entry.values.as_ref().map(Spanned::span)),
+        ("mean", entry.mean.as_ref().map(Spanned::span)),
+        ("sigma_at_most", span(&entry.sigma_at_most)),
+        ("symmetric", entry.symmetric.as_ref().map(Spanned::span)),
+        ("unimodal", entry.unimodal.as_ref().map(Spanned::span)),
     ]
 }
 
-fn within(parameter: &str) -> String {
+pub(super) fn within(parameter: &str) -> String {
     format!("distribution.{parameter}")
 }
 
@@ -216,7 +221,14 @@ fn split_normal(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]
 /// Distribution whose support is the band. Mean and sigma follow from the shape. Only the curvilinear trapezoid reaches beyond the band.
 fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
     let name = KINDS.iter().find(|known| known.1 == kind).map_or("", |known| known.0);
-    let to = || format!("a {name} distribution");
+    let to = || match kind {
+        Kind::Any => "an unknown distribution".to_owned(),
+        _ => format!("a {name} distribution"),
+    };
+    if let (Kind::Any, Some(sigma)) = (kind, &entry.sigma) {
+        let instead = "write { kind = \"any\", sigma_at_most = 0.01 }";
+        return Err(fault(sigma.span(), "sigma", StudyFault::DoesNotApply { key: "sigma", to: to(), instead }));
+    }
     let per_band = sigmas(entry)?;
     if kind != Kind::TruncatedNormal {
         if let Some((key, span, _)) = per_band {
@@ -256,6 +268,7 @@ fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option
             shared(CurvilinearTrapezoid::about(middle, half, inexactness))
         }
         Kind::TwoPoint => shared(TwoValues::about(middle, half)),
+        // A uniform distribution stands in for an unknown one.
         _ => shared(Uniform::about(middle, half)),
     };
     let distribution = placed(entry, distribution)?;

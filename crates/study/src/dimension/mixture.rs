@@ -2,6 +2,7 @@
 
 use crate::dimension::distribution;
 use crate::dimension::kinds::{agreeing, placed, shared};
+use crate::dimension::promise::refuse;
 use crate::dimension::spread::{Spread, is_flat, nothing_to_spread, sigma, sigmas};
 use crate::dimension::tolerance::tolerance;
 use crate::entries::file::{DimensionEntry, PartEntry};
@@ -51,6 +52,7 @@ fn part(name: &str, entry: &Spanned<PartEntry>, nominal: f64, band: Option<[f64;
         return Err(fault(part.weight.span(), "weight", out));
     }
     let line = part.as_dimension();
+    refuse(&line, "a part of a mixture")?;
     let middle = part.limits.as_ref().map(|limits| 0.5 * (limits.get_ref()[0] + limits.get_ref()[1]));
     let nominal = part.nominal.as_ref().map(|nominal| *nominal.get_ref()).or(middle).unwrap_or(nominal);
     let band = tolerance(&line, nominal)?.or(band.filter(|_| !is_flat(&line)));

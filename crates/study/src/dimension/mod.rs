@@ -6,6 +6,7 @@ mod mixture;
 mod off_centre;
 mod position;
 mod process;
+mod promise;
 mod spread;
 mod tolerance;
 
@@ -94,7 +95,7 @@ fn built(
         let at_step = |error: DimensionError| fault(step.span(), "step", error.fault);
         dimension = dimension.with_step(*step.get_ref()).map_err(at_step)?;
     }
-    Ok(dimension.with_convention(convention(entry, tolerance)?))
+    Ok(dimension.with_convention(convention(entry, nominal, tolerance)?))
 }
 
 /// The dimension as a process makes it that states its distribution, with this half-width.
@@ -104,18 +105,19 @@ pub(super) fn made(
     half: f64,
     line: Range<usize>,
 ) -> Result<Dimension, Fault> {
+    promise::refuse(process, "a process")?;
     let band = old.opened(old.reach(), half / old.half_band());
     let distribution = distribution(process, old.nominal(), Some(band))?;
-    let own = convention(process, Some(band))?;
+    let own = convention(process, old.nominal(), Some(band))?;
     let spread = distribution.ok_or_else(|| fault(line.clone(), "", spread::needs_band("distribution")))?;
     let made = Dimension::distributed(old.name(), old.nominal(), Some(band), spread);
     let whole = |error: DimensionError| fault(line, "", error.fault);
-    let convention = Convention { lot: own.lot, ..*old.convention() };
+    let convention = Convention { lot: own.lot, promise: own.promise, ..*old.convention() };
     Ok(old.remade(made.map_err(whole)?).with_convention(convention))
 }
 
-/// Convention of the line for tolerance stacks: RSS factor, mean shift, degrees of freedom and lots.
-fn convention(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Result<Convention, Fault> {
+/// Convention of the line: RSS factor, mean shift, degrees of freedom, lots, and what is promised of an unknown distribution.
+fn convention(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Convention, Fault> {
     let rss_factor = entry.rss_factor.as_ref().map(|given| conventions::factor(given, "rss_factor")).transpose()?;
     let mean_shift = entry.mean_shift.as_ref().map(|given| conventions::mean_shift(given, "mean_shift")).transpose()?;
     // A process is known only for a normal distribution.
@@ -126,7 +128,8 @@ fn convention(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Result<Con
         }
         _ => None,
     };
-    Ok(Convention { rss_factor, mean_shift, degrees: degrees(entry)?, lot })
+    let promise = promise::promise(entry, nominal, tolerance)?;
+    Ok(Convention { rss_factor, mean_shift, degrees: degrees(entry)?, lot, promise })
 }
 
 /// Degrees of freedom for an uncertainty budget: as given, or those of a Student distribution.

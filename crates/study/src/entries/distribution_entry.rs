@@ -49,6 +49,16 @@ pub(crate) struct DistributionEntry {
     /// Values of the dimension at the scores of a table of quantiles, ascending; the first and last are its ends. They hold for the nominal that
     /// the dimension needs beside them, which the nominal point of the report has, and its mean follows from them.
     pub(crate) values: Option<Spanned<Vec<f64>>>,
+    /// Least and greatest mean of an unknown distribution, as values of the dimension; the ends of the band unless given.
+    pub(crate) mean: Option<Spanned<[f64; 2]>>,
+    /// Greatest sigma of an unknown distribution.
+    pub(crate) sigma_at_most: Option<Spanned<f64>>,
+    /// True if an unknown distribution is symmetric about the middle of the band.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = false)))]
+    pub(crate) symmetric: Option<Spanned<bool>>,
+    /// True if the density of an unknown symmetric distribution falls on either side of the middle.
+    #[cfg_attr(feature = "schema", schemars(extend("default" = false)))]
+    pub(crate) unimodal: Option<Spanned<bool>>,
 }
 
 /// A part of a mixture: a weight, and what of a dimension is its own.

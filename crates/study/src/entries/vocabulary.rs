@@ -48,6 +48,8 @@ pub(crate) enum Kind {
     SplitNormal,
     GumbelLargest,
     GumbelSmallest,
+    /// Any distribution within the band that keeps what is promised of it.
+    Any,
     /// Distribution by the key `moments`, which has no name.
     Moments,
 }
@@ -57,7 +59,7 @@ pub(crate) type KnownKind = (&'static str, Kind, &'static [&'static str], &'stat
 
 const NOTHING: &str = "it has no parameters of its own";
 const ORIGIN: &str = "it knows `origin`";
-pub(crate) const KINDS: [KnownKind; 23] = [
+pub(crate) const KINDS: [KnownKind; 24] = [
     ("normal", Kind::Normal, &[], NOTHING),
     ("truncated-normal", Kind::TruncatedNormal, &[], NOTHING),
     ("uniform", Kind::Uniform, &[], NOTHING),
@@ -81,6 +83,12 @@ pub(crate) const KINDS: [KnownKind; 23] = [
     ("split-normal", Kind::SplitNormal, &["below", "above"], "it knows `below` and `above`"),
     ("gumbel-largest", Kind::GumbelLargest, &[], NOTHING),
     ("gumbel-smallest", Kind::GumbelSmallest, &[], NOTHING),
+    (
+        "any",
+        Kind::Any,
+        &["mean", "sigma_at_most", "symmetric", "unimodal"],
+        "it knows `mean`, `sigma_at_most`, `symmetric` and `unimodal`",
+    ),
 ];
 
 /// Names of all kinds, with their parameters.

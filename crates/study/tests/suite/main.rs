@@ -1,5 +1,6 @@
 //! Tests of the format of studies.
 
+mod any_distribution;
 mod compensators;
 mod completeness;
 mod general;
