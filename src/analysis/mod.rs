@@ -77,7 +77,6 @@ use sensitol_numeric::law::SurfaceLaw;
 use sensitol_numeric::parallel::join;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::power::{Rescale, Rescaling};
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::{self, Judged};
 
@@ -342,12 +341,12 @@ fn joint_requirement(
     joint: Option<Verified>,
     characteristics: &[CharacteristicAnalysis],
 ) -> Option<Judged> {
-    let requirement = Requirement::Yield(options.target_joint_yield?);
+    let target = options.target_joint_yield?;
     if problem.characteristics().iter().filter(|one| one.limits().exist()).count() < 2 {
         return None;
     }
     let interval = joint.and_then(|joint| joint_interval(joint, characteristics));
-    let judged = Judged::of(requirement, joint.map(|joint| joint.value), interval);
+    let judged = Judged::of_yield(target, joint.map(|joint| joint.value), interval);
     Some(judged.unless(characteristics.iter().any(|one| one.missing.unfinished)))
 }
 

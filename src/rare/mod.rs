@@ -55,7 +55,6 @@ use crate::summary::RunSummary;
 use crate::warning::Warning;
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::json_form::{text, through};
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::SamplingInterval;
 use sensitol_numeric::sampling::{Estimate, SamplingError};
 use sensitol_numeric::time::Instant;
@@ -475,8 +474,8 @@ impl SampledStages<'_> {
         let characteristics = measured::with_sampling(problem, &surrogates.outcome, characteristics);
         let joint_interval = joint_interval.map(|interval| measured::joint(joint, interval, &characteristics));
         let joint_requirement = options.surrogate.target_joint_yield.filter(|_| joint_interval.is_some());
-        let joint_requirement = joint_requirement
-            .map(|target| Judged::of(Requirement::Yield(target), joint, joint_interval).unless(stopped.is_some()));
+        let joint_requirement =
+            joint_requirement.map(|target| Judged::of_yield(target, joint, joint_interval).unless(stopped.is_some()));
         let run = RunSummary { stopped, evaluator: problem.evaluator(), ..drawn.and(&spent) };
         let warnings = warnings::of(&characteristics, samples, run.evaluations);
         RareEvents {

@@ -3,9 +3,9 @@
 use crate::rare::estimate::ProbabilityEstimate;
 use crate::rare::{Beyond, RareCharacteristic};
 use sensitol_numeric::characteristic::SpecLimits;
-use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::requirement::{Requirement, RequirementFigures};
 use sensitol_numeric::sampling::Estimate;
-use sensitol_numeric::verdict::{self, Judged, Verdict};
+use sensitol_numeric::verdict::{self, Judged, JudgedFigure, Verdict};
 
 /// Yield of a characteristic.
 #[derive(Clone, Copy)]
@@ -66,6 +66,17 @@ fn keeping(kept: ProbabilityEstimate, other: Option<&Beyond>) -> Within {
     Within { value, interval: verdict::share([keeps - lost - apart(0), keeps - lost + apart(1)]) }
 }
 
+impl RequirementFigures for RareCharacteristic {
+    type Figure = JudgedFigure;
+
+    /// Yield with its interval, in which points without a value may all be rejects.
+    fn yield_(&self) -> JudgedFigure {
+        let sides = [&self.below, &self.above].into_iter().flatten();
+        let unknown: f64 = sides.map(|beyond| beyond.bounds[1] - beyond.bounds[0]).sum();
+        JudgedFigure { value: self.yield_, interval: self.yield_interval.map(|[low, high]| [low - unknown, high]) }
+    }
+}
+
 impl RareCharacteristic {
     /// Probability beyond one of the limits if no point without a value lies there, and if all do. Returns None if
     /// every point has a value.
@@ -73,18 +84,10 @@ impl RareCharacteristic {
         (self.failed > 0).then_some(beyond.bounds)
     }
 
-    /// Verdict on any requirement, the characteristic's own or another.
-    ///
-    /// A yield is judged by its interval, in which points without a value may all be rejects. Other requirements have
-    /// no verdict, because nothing is known of the values between the limits.
+    /// Verdict on any requirement, the characteristic's own or another. Only a yield can be judged, because nothing is
+    /// known of the values between the limits.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
-        let sides = [&self.below, &self.above].into_iter().flatten();
-        let unknown: f64 = sides.map(|beyond| beyond.bounds[1] - beyond.bounds[0]).sum();
-        let (value, interval) = match requirement {
-            Requirement::Yield(_) => (self.yield_, self.yield_interval.map(|[low, high]| [low - unknown, high])),
-            _ => (None, None),
-        };
-        Judged::of(requirement, value, interval).unless(self.unfinished)
+        Judged::by(requirement, self).unless(self.unfinished)
     }
 
     /// Verdicts on all requirements of the characteristic, including its target yield.
@@ -94,6 +97,6 @@ impl RareCharacteristic {
 
     /// Verdict on the target yield. Returns None if there is no target.
     pub fn verdict(&self) -> Option<Verdict> {
-        self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
+        verdict::on_target_yield(&self.characteristic, |target| self.judge(target))
     }
 }

@@ -25,10 +25,10 @@ use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
 use sensitol_numeric::json_form::{RejectIntervals, through};
 use sensitol_numeric::json_form::{millionths, text};
 use sensitol_numeric::power::rescale;
-use sensitol_numeric::requirement::Requirement;
+use sensitol_numeric::requirement::{Requirement, RequirementFigures};
 use sensitol_numeric::sampling::{Estimate, FEWEST, Summary, of_moments, wilson};
 use sensitol_numeric::sampling::{LargestShare, SamplingInterval, clopper_pearson, one_error, settled};
-use sensitol_numeric::verdict::{self, Judged, Verdict};
+use sensitol_numeric::verdict::{self, Judged, JudgedFigure, Verdict};
 
 /// Estimates for one characteristic, each with its standard error. Unknown values are None.
 #[derive(Debug, Clone, Serialize)]
@@ -273,6 +273,38 @@ impl SimulatedCharacteristic {
     }
 }
 
+/// Figures of a sample. It gives no RSS and no worst case.
+impl RequirementFigures for SimulatedCharacteristic {
+    type Figure = JudgedFigure;
+
+    /// Yield with its interval, in which points without a value may all be rejects. Of a characteristic with a condition it is the yield of
+    /// the assemblies that count.
+    fn yield_(&self) -> JudgedFigure {
+        if self.characteristic.given().is_some() {
+            let known = self.conditional.as_ref();
+            return JudgedFigure { value: known.map(|of| of.value), interval: known.and_then(|of| of.interval) };
+        }
+        let interval = self.yield_.zip(self.yield_interval());
+        let interval = interval.map(|(share, [low, high])| [low.min(share.bounds[0]), high]);
+        JudgedFigure { value: self.yield_.map(|share| share.value), interval }
+    }
+
+    /// Cpk with two standard errors of mean and sigma, and the uncertainty of measured samples.
+    fn cpk(&self) -> JudgedFigure {
+        let Some((mean, sigma)) = self.mean.zip(self.sigma.filter(|sigma| sigma.value > 0.0)) else {
+            return JudgedFigure { value: self.cpk, interval: None };
+        };
+        let [mean, sigma] = [mean, sigma].map(|of| (of.value, of.standard_error));
+        JudgedFigure::cpk(self.cpk, mean, sigma, self.characteristic.limits(), self.sampling.as_ref())
+    }
+
+    /// Sigma with two standard errors, and the uncertainty of measured samples.
+    fn sigma(&self) -> JudgedFigure {
+        let measured = self.sampling.as_ref();
+        self.sigma.map(|of| JudgedFigure::sigma(of.value, of.standard_error, measured)).unwrap_or_default()
+    }
+}
+
 impl SimulatedCharacteristic {
     /// Adds a proof by interval arithmetic that a side without points has no rejects, if there is one.
     pub(super) fn with_proof(mut self, problem: &Problem, c: usize) -> Self {
@@ -285,43 +317,8 @@ impl SimulatedCharacteristic {
     }
 
     /// Judges a requirement, which need not be the characteristic's own.
-    ///
-    /// The interval of the yield counts points without a value as possible rejects. Cpk and sigma have two standard errors of mean and
-    /// sigma, with the uncertainty of measured samples. A sample gives no RSS and no worst case.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
-        let limits = self.characteristic.limits();
-        let known = |estimate: Option<Estimate>| estimate.map(|of| (of.value, of.standard_error));
-        // No interval if the uncertainty of measured samples is unknown.
-        let measured =
-            |value: Option<f64>, own: Option<[f64; 2]>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| match &self
-                .sampling
-            {
-                Some(sampling) => Some(verdict::joined(value?, own?, of(sampling)?)),
-                None => own,
-            };
-        let (value, interval) = match requirement {
-            // The target is that of the assemblies that count.
-            Requirement::Yield(_) if self.characteristic.given().is_some() => {
-                let known = self.conditional.as_ref();
-                (known.map(|of| of.value), known.and_then(|of| of.interval))
-            }
-            Requirement::Yield(_) => (
-                self.yield_.map(|share| share.value),
-                self.yield_.zip(self.yield_interval()).map(|(share, [low, high])| [low.min(share.bounds[0]), high]),
-            ),
-            Requirement::Cpk(_) => {
-                let both = known(self.mean).zip(known(self.sigma).filter(|&(sigma, _)| sigma > 0.0));
-                let own = both.and_then(|(mean, sigma)| verdict::of_cpk(mean, sigma, limits));
-                (self.cpk, measured(self.cpk, own, |of| of.cpk))
-            }
-            Requirement::Sigma(_) => {
-                let value = self.sigma.map(|sigma| sigma.value);
-                let own = known(self.sigma).and_then(|(sigma, error)| verdict::about(sigma, error));
-                (value, measured(value, own, |of| of.sigma))
-            }
-            Requirement::Rss | Requirement::WorstCase => (None, None),
-        };
-        Judged::of(requirement, value, interval).unless(self.unfinished)
+        Judged::by(requirement, self).unless(self.unfinished)
     }
 
     /// 95 % interval of the yield: that of the points, with the uncertainty of measured samples. Returns None if there are no limits, or no
@@ -365,7 +362,7 @@ impl SimulatedCharacteristic {
 
     /// Verdict on the target yield. Returns None if there is no target.
     pub fn verdict(&self) -> Option<Verdict> {
-        self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
+        verdict::on_target_yield(&self.characteristic, |target| self.judge(target))
     }
 
     /// Warning of values whose powers overflow a double.

@@ -18,7 +18,6 @@ use crate::simulation::surface_difference::Difference;
 use crate::simulation::{REPLICATES, Simulation, SimulationOptions, TASKS};
 use crate::summary::{RunSummary, StopReason};
 use crate::warning::Warning;
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::LargestPoints;
 use sensitol_numeric::sampling::{Fine, Portion, Sampler, Scale, Summary};
 use sensitol_numeric::verdict::Judged;
@@ -354,7 +353,7 @@ impl<'a> Tally<'a> {
             .map(|joint| together::with_sampling(joint, &characteristics));
         let joint_requirement = options.target_joint_yield.zip(joint).map(|(target, joint)| {
             let interval = [joint.interval[0].min(joint.bounds[0]), joint.interval[1]];
-            Judged::of(Requirement::Yield(target), Some(joint.value), Some(interval)).unless(stopped.is_some())
+            Judged::of_yield(target, Some(joint.value), Some(interval)).unless(stopped.is_some())
         });
         let correlations = together::correlations(self.problem, &self.together);
         let surrogate = self.control.map(|control| &control.outcome.evaluated);

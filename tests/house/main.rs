@@ -5,6 +5,7 @@ mod circles;
 mod constants;
 mod errors;
 mod sources;
+mod stages;
 mod style;
 mod tuning;
 mod type_names;

@@ -159,8 +159,13 @@ impl Characteristic {
 
     /// All requirements: the target yield first, then the other one.
     pub fn requirements(&self) -> Vec<Requirement> {
-        let target = self.target_yield.map(Requirement::Yield);
+        let target = self.target();
         target.into_iter().chain(self.requirement.filter(|other| Some(*other) != target)).collect()
+    }
+
+    /// Target yield as a requirement, if one was given.
+    pub fn target(&self) -> Option<Requirement> {
+        self.target_yield.map(Requirement::Yield)
     }
 
     /// Share of assemblies that must lie within the limits, if one was given.

@@ -1,4 +1,6 @@
-//! Requirements of a characteristic.
+//! Requirements of a characteristic: their names, their sense, their unit, and the figure that judges each kind.
+//!
+//! A new kind is a variant of [`Requirement`], its arms in this file, and a method of [`RequirementFigures`].
 
 use serde::{Serialize, Serializer};
 
@@ -17,6 +19,63 @@ pub enum Requirement {
     Rss,
     /// Worst case within the limits: proven by interval arithmetic if the formula allows it, else computed from the surface.
     WorstCase,
+}
+
+/// Side of the required amount on which a figure must lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sense {
+    /// The figure must be at least the amount.
+    AtLeast,
+    /// The figure must be at most the amount.
+    AtMost,
+}
+
+/// Figures of a characteristic, one for each kind of requirement.
+///
+/// The default of the type means an unknown figure. [`Requirement::figure`] selects the one that judges a requirement.
+///
+/// ```
+/// use sensitol_numeric::requirement::{Requirement, RequirementFigures};
+/// struct Moments {
+///     sigma: f64,
+/// }
+/// impl RequirementFigures for Moments {
+///     type Figure = Option<f64>;
+///     fn sigma(&self) -> Option<f64> {
+///         Some(self.sigma)
+///     }
+/// }
+/// assert_eq!(Requirement::Sigma(0.1).figure(&Moments { sigma: 0.2 }), Some(0.2));
+/// assert_eq!(Requirement::Rss.figure(&Moments { sigma: 0.2 }), None);
+/// ```
+pub trait RequirementFigures {
+    /// Type of a figure.
+    type Figure: Default;
+
+    /// Share within the limits.
+    fn yield_(&self) -> Self::Figure {
+        Self::Figure::default()
+    }
+
+    /// Process capability Cpk.
+    fn cpk(&self) -> Self::Figure {
+        Self::Figure::default()
+    }
+
+    /// Standard deviation.
+    fn sigma(&self) -> Self::Figure {
+        Self::Figure::default()
+    }
+
+    /// Fraction of the limits that the RSS uses.
+    fn rss(&self) -> Self::Figure {
+        Self::Figure::default()
+    }
+
+    /// Fraction of the limits that the worst case uses.
+    fn worst_case(&self) -> Self::Figure {
+        Self::Figure::default()
+    }
 }
 
 /// Error of an impossible requirement.
@@ -75,6 +134,35 @@ impl Serialize for Requirement {
 }
 
 impl Requirement {
+    /// Figure that judges the requirement.
+    pub fn figure<F: RequirementFigures + ?Sized>(&self, figures: &F) -> F::Figure {
+        match self {
+            Self::Yield(_) => figures.yield_(),
+            Self::Cpk(_) => figures.cpk(),
+            Self::Sigma(_) => figures.sigma(),
+            Self::Rss => figures.rss(),
+            Self::WorstCase => figures.worst_case(),
+        }
+    }
+
+    /// Side of the amount on which the figure must lie.
+    pub fn sense(&self) -> Sense {
+        match self {
+            Self::Yield(_) | Self::Cpk(_) => Sense::AtLeast,
+            Self::Sigma(_) | Self::Rss | Self::WorstCase => Sense::AtMost,
+        }
+    }
+
+    /// Scale of rounding errors of the figure near the amount: the rejects of a yield, else the amount.
+    pub fn rounding_scale(&self) -> f64 {
+        self.target_yield().map_or_else(|| self.amount().abs(), |target| (1.0 - target).abs())
+    }
+
+    /// Required yield. Returns None for other requirements.
+    pub fn target_yield(&self) -> Option<f64> {
+        if let Self::Yield(target) = *self { Some(target) } else { None }
+    }
+
     /// Name of the requirement in JSON and CSV.
     pub fn key(&self) -> &'static str {
         match self {

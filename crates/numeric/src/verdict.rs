@@ -15,7 +15,8 @@ use crate::capability;
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::json_form::{ends, finite};
 use crate::power::Power;
-use crate::requirement::{Required, Requirement};
+use crate::requirement::{Required, Requirement, RequirementFigures, Sense};
+use crate::sampling::SamplingInterval;
 
 /// Errors on either side of an estimate that make its interval: 95 % if they are standard errors.
 pub const ERRORS: f64 = 2.0;
@@ -70,19 +71,51 @@ impl Verdict {
     /// ```
     pub fn of(requirement: Requirement, interval: Option<[f64; 2]>) -> Self {
         let Some([low, high]) = interval.filter(|[low, high]| low <= high) else { return Self::Inconclusive };
-        let slack = |room: f64| ROUNDING * room.abs();
-        let [worst, best, target] = match requirement {
-            // Rounding is relative to the rejects, not to the yield.
-            Requirement::Yield(target) => [low + slack(1.0 - target), high, target],
-            Requirement::Cpk(target) => [low + slack(target), high, target],
-            Requirement::Sigma(target) => [-high + slack(target), -low, -target],
-            Requirement::Rss | Requirement::WorstCase => [-high + slack(1.0), -low, -1.0],
+        let rounding = ROUNDING * requirement.rounding_scale();
+        let [worst, best, target] = match requirement.sense() {
+            Sense::AtLeast => [low + rounding, high, requirement.amount()],
+            Sense::AtMost => [-high + rounding, -low, -requirement.amount()],
         };
         match () {
             () if worst >= target => Self::Met,
             () if best < target => Self::Missed,
             () => Self::Inconclusive,
         }
+    }
+}
+
+/// Value of a figure and its interval. Both are None by default: an unknown figure.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct JudgedFigure {
+    /// Value in the measure of the requirement.
+    pub value: Option<f64>,
+    /// Interval of the value.
+    pub interval: Option<[f64; 2]>,
+}
+
+impl JudgedFigure {
+    /// Cpk `value` with the interval by the errors of mean and sigma, joined with that of measured samples.
+    pub fn cpk(
+        value: Option<f64>,
+        mean: (f64, Option<f64>),
+        sigma: (f64, Option<f64>),
+        limits: SpecLimits,
+        measured: Option<&SamplingInterval>,
+    ) -> Self {
+        Self { value, interval: of_cpk(mean, sigma, limits) }.measured(measured, |of| of.cpk)
+    }
+
+    /// Sigma with the interval by its error, joined with that of measured samples, and cut at 0.
+    pub fn sigma(value: f64, error: Option<f64>, measured: Option<&SamplingInterval>) -> Self {
+        let found = Self { value: Some(value), interval: about(value, error) }.measured(measured, |of| of.sigma);
+        Self { interval: found.interval.map(|[low, high]| [low.max(0.0), high]), ..found }
+    }
+
+    /// Joins the interval with that of measured samples, if there are any. There is none if their uncertainty is unknown.
+    fn measured(self, samples: Option<&SamplingInterval>, of: fn(&SamplingInterval) -> Option<[f64; 2]>) -> Self {
+        let Some(samples) = samples else { return self };
+        let joined = || Some(joined(self.value?, self.interval?, of(samples)?));
+        Self { interval: joined(), ..self }
     }
 }
 
@@ -131,16 +164,27 @@ impl Judged {
         Self { requirement, value, interval, verdict: Verdict::of(requirement, interval) }
     }
 
+    /// Judges a requirement by the figure of its kind.
+    pub fn by(requirement: Requirement, figures: &impl RequirementFigures<Figure = JudgedFigure>) -> Self {
+        let JudgedFigure { value, interval } = requirement.figure(figures);
+        Self::of(requirement, value, interval)
+    }
+
+    /// Judges a target yield by a yield and its interval.
+    pub fn of_yield(target: f64, value: Option<f64>, interval: Option<[f64; 2]>) -> Self {
+        Self::of(Requirement::Yield(target), value, interval)
+    }
+
     /// Judged requirement of a characteristic multiplied by a power of two.
     pub fn times(self, power: Power) -> Self {
-        match self.requirement {
-            Requirement::Sigma(_) => Self {
-                requirement: self.requirement.times(power),
-                value: self.value.and_then(|value| power.checked(value)),
-                interval: self.interval.map(|interval| interval.map(|end| power.times(end))),
-                verdict: self.verdict,
-            },
-            _ => self,
+        if !self.requirement.has_unit() {
+            return self;
+        }
+        Self {
+            requirement: self.requirement.times(power),
+            value: self.value.and_then(|value| power.checked(value)),
+            interval: self.interval.map(|interval| interval.map(|end| power.times(end))),
+            verdict: self.verdict,
         }
     }
 
@@ -160,6 +204,11 @@ impl Judged {
 /// Judges every requirement of a characteristic by `judge`, its target yield first.
 pub fn judged(characteristic: &Characteristic, judge: impl Fn(Requirement) -> Judged) -> Vec<Judged> {
     characteristic.requirements().into_iter().map(judge).collect()
+}
+
+/// Verdict on the target yield of a characteristic by `judge`. Returns None without a target.
+pub fn on_target_yield(characteristic: &Characteristic, judge: impl Fn(Requirement) -> Judged) -> Option<Verdict> {
+    characteristic.target().map(|target| judge(target).verdict)
 }
 
 /// Worst of all verdicts: missed before inconclusive before met. Returns None if there are no verdicts.

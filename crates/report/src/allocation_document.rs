@@ -7,27 +7,22 @@ use crate::allocation::{
 };
 use crate::analysis::analysis_document::CharacteristicSections;
 use crate::document::number::{
-    beside, index, known, plain, power_of_ten, share, short, significant, target_yield, within, yielded,
+    beside, index, known, plain, power_of_ten, share, short, significant, target_yield, yielded,
 };
-use crate::document::rejects::Rejects;
 use crate::document::{
     Bar, Bars, Blocks, Cell, Chart, Columns, DataTable, Document, Element, Fill, Flow, Layer, Line, Paragraph, Plot,
     PlotAxis, PlotPoint, PlotScale, Section, Stroke, Tone, Value,
 };
 use crate::figures::{Figures, Named};
 use crate::overview::verdict;
-use crate::requirement::loud;
+use crate::requirement::{axis_place, brief, demand, found, front_label, loud, measure};
 use sensitol::allocation::{
     Allocated, Attainable, Bound, FrontRequirement, JointYield, Kept, Moved, ShadowPrice, Status,
 };
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::json_form::finite;
-use sensitol_numeric::requirement::Requirement;
-use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
-/// Most significant digits of a value beside its requirement.
-const MOST_DIGITS: usize = 6;
 /// Significant digits of a cost.
 const COST: usize = 5;
 /// Most labels on the yield axis of the front. With more, only powers of ten of the rejects are labelled.
@@ -217,7 +212,7 @@ impl AllocationReport {
             .column("characteristic", "required", |one: &&OfCharacteristic<Kept>| Cell::name(&one.characteristic))
             .data("requirement", |one| Cell::text(one.of.requirement.key()))
             .data("required", |one| Cell::data(one.of.requirement.amount()))
-            .shown("", |one| Cell::text(wanted(one.of.requirement)))
+            .shown("", |one| Cell::text(brief(one.of.requirement)))
             .column("before", "before", |one| measured(Some(&one.of.before)))
             .column("after", "after", |one| measured(one.of.after.as_ref()))
             .data("met_before", move |one| truth(one.of.before.verdict.met()))
@@ -348,16 +343,7 @@ impl AllocationReport {
         type Row<'r> = (&'r FrontRequirement, Option<f64>);
         let rows = self.front.iter().filter_map(|point| Some((point.required.first()?, point.cost)));
         Columns::default()
-            .shown("required", |(first, _): &Row<'_>| {
-                Cell::text(match first.requirement {
-                    Requirement::Yield(least) => target_yield(least),
-                    Requirement::Cpk(least) => format!("Cpk {}", significant(least, 4)),
-                    Requirement::Sigma(most) => format!("sigma {}", significant(most, 4)),
-                    Requirement::Rss | Requirement::WorstCase => {
-                        format!("{} % of the room", significant(100.0 * first.amount, 4))
-                    }
-                })
-            })
+            .shown("required", |(first, _): &Row<'_>| Cell::text(front_label(first.requirement, first.amount)))
             .shown("cost", |(_, cost)| Cell::number(*cost, money))
             .shown("", |(_, cost)| Cell::text(if cost.is_none() { "cannot be kept" } else { "" }).toned(Tone::Bad))
             .table("", rows)
@@ -392,7 +378,7 @@ impl AllocationReport {
         let front: Vec<(f64, f64, String)> = (self.front.iter())
             .filter_map(|point| {
                 let wanted = point.required.first()?;
-                let (place, label) = placed(wanted.requirement, wanted.amount);
+                let (place, label) = axis_place(wanted.requirement, wanted.amount);
                 Some((place, point.cost?, label))
             })
             .collect();
@@ -400,8 +386,8 @@ impl AllocationReport {
         let before = first.and_then(|FrontRequirement { characteristic, requirement: first, .. }| {
             let one = self.requirements.iter().find(|one| one.characteristic == *characteristic)?;
             let (had, cost) = (one.of.before.value.and_then(finite)?, self.cost_before?);
-            let seen = had < 1.0 - 1e-12 || !matches!(first, Requirement::Yield(_));
-            seen.then(|| [placed(*first, had).0, cost])
+            let seen = had < 1.0 - 1e-12 || first.target_yield().is_none();
+            seen.then(|| [axis_place(*first, had).0, cost])
         });
         let circle = |at: [f64; 2], strong: bool, name: &str, tip: String| PlotPoint {
             at,
@@ -418,7 +404,7 @@ impl AllocationReport {
             format!("{} required", first.map_or("yield", |wanted| wanted.requirement.key())),
             PlotScale::Linear(0.05),
         );
-        if let Some(Requirement::Yield(_)) = first.map(|wanted| wanted.requirement) {
+        if first.is_some_and(|wanted| wanted.requirement.target_yield().is_some()) {
             let places = front.iter().map(|(place, ..)| *place);
             x.ticks = round_yields(places.clone().fold(f64::INFINITY, f64::min), places.fold(0.0, f64::max));
         }
@@ -442,7 +428,7 @@ fn unattainable(
     OfCharacteristic { characteristic, of: one }: &OfCharacteristic<Attainable>,
     proven: bool,
 ) {
-    let (name, required) = (short(characteristic), required(one.requirement));
+    let (name, required) = (short(characteristic), demand(one.requirement));
     let best = one.best.map_or("unknown".to_owned(), |best| measure(one.requirement, best));
     page.line(match proven {
         true => format!("`{name}` cannot keep {required}: the best that there is is {best}"),
@@ -461,71 +447,15 @@ fn unattainable(
     }
 }
 
-fn required(requirement: Requirement) -> String {
-    match requirement {
-        Requirement::Yield(least) => format!("a yield of {}", target_yield(least)),
-        Requirement::Cpk(least) => format!("a Cpk of {}", plain(least)),
-        Requirement::Sigma(most) => format!("a sigma of {}", plain(most)),
-        Requirement::Rss => "its limits by rss".to_owned(),
-        Requirement::WorstCase => "its limits in the worst case".to_owned(),
-    }
-}
-
-/// Formats a value in the measure of its requirement.
-fn measure(requirement: Requirement, value: f64) -> String {
-    match requirement {
-        Requirement::Yield(_) => yielded(value),
-        Requirement::Cpk(_) => format!("{value:.4}"),
-        Requirement::Sigma(_) => significant(value, 6),
-        Requirement::Rss | Requirement::WorstCase => format!("{} % of the room", significant(100.0 * value, 5)),
-    }
-}
-
 fn measured(judged: Option<&Judged>) -> Cell {
     let value = judged.and_then(|judged| judged.value).and_then(finite);
     Cell::number(value, |_| judged.map_or_else(String::new, found))
-}
-
-/// Formats a judged value in the measure of its requirement, with no digit beyond its interval.
-fn found(judged: &Judged) -> String {
-    let Some(value) = judged.value.and_then(finite) else { return "unknown".to_owned() };
-    let Some([low, high]) = judged.interval.filter(|ends| ends.iter().all(|end| end.is_finite())) else {
-        return measure(judged.requirement, value);
-    };
-    let (full, error) = (measure(judged.requirement, value), one_error(value, [low, high]));
-    match judged.requirement {
-        Requirement::Yield(_) => Rejects::all(1.0 - value, Some(error)).yield_text().unwrap_or(full),
-        Requirement::Cpk(_) | Requirement::Sigma(_) => {
-            let carried = within(value, MOST_DIGITS, Some(error));
-            if carried.len() < full.len() { carried } else { full }
-        }
-        Requirement::Rss | Requirement::WorstCase => full,
-    }
-}
-
-fn wanted(requirement: Requirement) -> String {
-    match requirement {
-        Requirement::Yield(least) => format!("yield {}", target_yield(least)),
-        Requirement::Cpk(number) | Requirement::Sigma(number) => format!("{} {}", requirement.name(), plain(number)),
-        Requirement::Rss | Requirement::WorstCase => requirement.name().to_owned(),
-    }
 }
 
 fn bound(bound: Bound) -> &'static str {
     match bound {
         Bound::Least => "min",
         Bound::Greatest => "max",
-    }
-}
-
-/// Returns the place of a requirement on the axis, and its label.
-fn placed(requirement: Requirement, required: f64) -> (f64, String) {
-    match requirement {
-        Requirement::Yield(_) => {
-            let rejected = (1.0 - required).max(f64::MIN_POSITIVE);
-            (-libm::log10(rejected), share(rejected))
-        }
-        _ => (required, significant(required, 3)),
     }
 }
 

@@ -6,7 +6,6 @@ use crate::document::{Cell, Columns, DataTable};
 use sensitol::analysis::{ConditionalYield, OutputCorrelation};
 use sensitol::simulation::YieldEstimate;
 use sensitol_numeric::characteristic::Characteristic;
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::Judged;
 
@@ -48,7 +47,7 @@ fn coefficient(value: f64, error: Option<f64>) -> String {
 /// Sentence with the joint yield, its error if that is not empty, and the target.
 pub(super) fn all_limits(yield_: &str, error: &str, requirement: Option<&Judged>) -> String {
     let target = requirement.map_or_else(String::new, |judged| {
-        let Requirement::Yield(target) = judged.requirement else { return String::new() };
+        let Some(target) = judged.requirement.target_yield() else { return String::new() };
         format!("; target {}: {}", target_yield(target), judged.verdict.name())
     });
     let error = if error.is_empty() { String::new() } else { format!(", {error}") };

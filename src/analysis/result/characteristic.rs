@@ -17,12 +17,11 @@ use crate::method::{ErrorEstimate, Order, Outcome, estimate};
 use crate::problem::Problem;
 use crate::verification::Verified;
 use sensitol_numeric::capability::{Capability, EstimatedShare, Law};
-use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::json_form::{Four, through};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::power::{Rescale, Rescaling, Wide, rescale};
 use sensitol_numeric::requirement::Requirement;
-use sensitol_numeric::sampling::SamplingInterval;
 use sensitol_numeric::surrogate::DerivativeOrigin;
 use sensitol_numeric::verdict::{self, Judged, Verdict};
 
@@ -202,97 +201,8 @@ impl CharacteristicAnalysis {
     }
 
     /// Judges a requirement, which need not be the characteristic's own.
-    ///
-    /// The interval of a yield is [`yield_interval`](Self::yield_interval). That of a Cpk and of sigma follows from the estimated errors of
-    /// mean and sigma, and from the uncertainty of measured samples. RSS follows from the slopes, without an error. The worst case lies
-    /// between values that were found and the bounds of interval arithmetic.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
-        let limits = self.characteristic.limits();
-        let error = |of: fn(&ErrorEstimate) -> Option<f64>| match self.constant {
-            true => Some(0.0),
-            false => self.error_estimate.as_ref().and_then(of),
-        };
-        let (mean, sigma) = (error(|of| of.mean), error(|of| of.sigma));
-        let part = |value: Option<f64>| (value, value.map(|value| [value; 2]));
-        // No interval if the uncertainty of measured samples is unknown.
-        let measured =
-            |value: Option<f64>, own: Option<[f64; 2]>, of: fn(&SamplingInterval) -> Option<[f64; 2]>| match &self
-                .evidence
-                .sampling
-            {
-                Some(sampling) => Some(verdict::joined(value?, own?, of(sampling)?)),
-                None => own,
-            };
-        let (value, interval) = match requirement {
-            // The worst distribution decides, not the one that stands in for it.
-            Requirement::Yield(_) if let Some(free) = &self.distribution.distribution_free_yield => {
-                (free.interval.map(|[least, _]| least), free.interval)
-            }
-            // They depend on the distribution that is not known.
-            Requirement::Cpk(_) | Requirement::Sigma(_) if self.distribution.distribution_free_yield.is_some() => {
-                (None, None)
-            }
-            // The target is that of the assemblies that count.
-            Requirement::Yield(_) if self.characteristic.given().is_some() => {
-                let known = self.distribution.conditional.as_ref();
-                (known.map(|of| of.value), known.and_then(|of| of.interval))
-            }
-            Requirement::Yield(_) => (self.distribution.capability.and_then(|of| of.yield_()), self.yield_interval()),
-            Requirement::Cpk(_) => {
-                let value = self.distribution.capability.and_then(|of| of.cpk);
-                let own = self.moments.and_then(|of| verdict::of_cpk((of.mean(), mean), (of.sigma(), sigma), limits));
-                (value, measured(value, own, |of| of.cpk))
-            }
-            Requirement::Sigma(_) => {
-                let value = self.moments.map(|of| of.sigma());
-                let own = value.and_then(|value| verdict::about(value, sigma));
-                (value, measured(value, own, |of| of.sigma).map(|[low, high]| [low.max(0.0), high]))
-            }
-            Requirement::Rss => {
-                part(self.linear.middle.zip(self.linear.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2])))
-            }
-            Requirement::WorstCase => {
-                self.worst_case_taken().map_or((None, None), |(value, within)| (Some(value), within))
-            }
-        };
-        Judged::of(requirement, value, interval).unless(self.missing.unfinished)
-    }
-
-    /// Part of the distance to the limits that the worst case uses, and its interval.
-    ///
-    /// The interval lies between values that exist and the bounds of interval arithmetic, if the formula has bounds. It follows from the
-    /// slopes if the function is proven to be linear, and otherwise from the surface.
-    fn worst_case_taken(&self) -> Option<(f64, Option<[f64; 2]>)> {
-        let (nominal, linear) = self.nominal.zip(self.range.worst_case)?;
-        let part = |[low, high]: [f64; 2], more: f64| {
-            let reach = [nominal - low, high - nominal].map(|reach| (reach + more).max(0.0));
-            taken(self.characteristic.limits(), nominal, reach)
-        };
-        let by_slopes = part(linear, 0.0)?;
-        if self.constant {
-            return Some((by_slopes, Some([by_slopes; 2])));
-        }
-        if let Some(proof) = self.proof().filter(|proof| proof.proven) {
-            let ([low, high], [below, above]) = (proof.bounds, proof.slack);
-            let most = part(proof.bounds, 0.0)?;
-            let reached = part([low + below, high - above], 0.0)?;
-            return Some((most, Some([reached.min(most), most])));
-        }
-        if self.is_proven_linear() {
-            return Some((by_slopes, Some([by_slopes; 2])));
-        }
-        let found = self.range.extremes.as_ref().and_then(|found| part([found.least.value, found.greatest.value], 0.0));
-        if let Some(proof) = self.proof() {
-            let most = part(proof.bounds, 0.0)?;
-            let least = found.unwrap_or(0.0).min(most);
-            return Some((found.unwrap_or(by_slopes), Some([least, most])));
-        }
-        let around = self.range.curved.and_then(|curved| Some([part(linear, -curved)?, part(linear, curved)?]));
-        Some(match found {
-            // A search without a proof shows only values that are reached.
-            Some(found) => (found, around.map(|[_, most]| [found, found.max(most)])),
-            None => (by_slopes, around),
-        })
+        Judged::by(requirement, self).unless(self.missing.unfinished)
     }
 
     /// True if the formula's own degree proves that it is linear: the slopes are exact everywhere.
@@ -318,7 +228,7 @@ impl CharacteristicAnalysis {
 
     /// Verdict on the target yield. Returns None if there is no target.
     pub fn verdict(&self) -> Option<Verdict> {
-        self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
+        verdict::on_target_yield(&self.characteristic, |target| self.judge(target))
     }
 
     /// True if the target yield is met. Returns None if there is no target, and if it is unknown.
@@ -459,19 +369,6 @@ fn curved(problem: &Problem, outcome: &Outcome, c: usize) -> Option<f64> {
     };
     let own = (0..problem.dimensions().len()).map(own).sum::<Option<f64>>()?;
     Some(own + pairs_of(outcome, c).map(both).sum::<Option<f64>>()?)
-}
-
-/// Greatest part of the distance between a value and the limits that is used, below and above it. Infinite if there is no distance.
-fn taken(limits: SpecLimits, from: f64, [below, above]: [f64; 2]) -> Option<f64> {
-    // If the value is at its limit and nothing extends beyond it, nothing is used.
-    let part = |reach: f64, room: f64| match room > 0.0 {
-        true => reach / room,
-        false if room == 0.0 && reach <= 4.0 * f64::EPSILON * from.abs() => 0.0,
-        false => f64::INFINITY,
-    };
-    let below = limits.lower().map(|lower| part(below, from - lower));
-    let above = limits.upper().map(|upper| part(above, upper - from));
-    below.into_iter().chain(above).reduce(f64::max)
 }
 
 /// Exact first and second derivative by a dimension. Returns None if one of them is unknown.

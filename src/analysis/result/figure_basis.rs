@@ -6,7 +6,6 @@ use crate::analysis::result::characteristic::CharacteristicAnalysis;
 use crate::analysis::result::points_to_decide::points_to_decide;
 use crate::analysis::result::verification::VerificationKind;
 use crate::analysis::result::yield_source::YieldSource;
-use sensitol_numeric::requirement::Requirement;
 
 /// Basis of the certainty of a figure, best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
@@ -59,16 +58,6 @@ impl CharacteristicAnalysis {
         FigureBases { moments, yield_: self.distribution.yield_source.map(|of| self.basis_of_source(of)), quantiles }
     }
 
-    /// Basis of the verdict on a requirement. Returns None if the requirement is not judged.
-    pub fn basis_of(&self, requirement: Requirement) -> Option<FigureBasis> {
-        match requirement {
-            Requirement::Yield(_) => self.bases().yield_,
-            Requirement::WorstCase if self.proof().is_some() => Some(FigureBasis::Proof),
-            Requirement::WorstCase => Some(FigureBasis::Surface),
-            _ => self.basis_of_moments(),
-        }
-    }
-
     /// Number of plain points of the model that would decide the target yield if the yield of the surface is right. Returns None for a
     /// refuted surface, for any other basis, without a target, and if no practicable number decides it.
     pub fn points_to_decide(&self) -> Option<u64> {
@@ -78,7 +67,7 @@ impl CharacteristicAnalysis {
         if by_surface && !refuted { points_to_decide(rejected, 1.0 - target) } else { None }
     }
 
-    fn basis_of_moments(&self) -> Option<FigureBasis> {
+    pub(super) fn basis_of_moments(&self) -> Option<FigureBasis> {
         self.moments?;
         Some(match self.evidence.verification.as_ref().map(|of| of.kind) {
             _ if self.constant => FigureBasis::Proof,

@@ -11,6 +11,7 @@ pub(in crate::analysis) mod interaction;
 pub(in crate::analysis) mod interaction_listing;
 pub(in crate::analysis) mod interaction_remainder;
 pub(in crate::analysis) mod json;
+pub(in crate::analysis) mod judged_figures;
 pub(in crate::analysis) mod linear;
 pub(in crate::analysis) mod points_to_decide;
 pub(in crate::analysis) mod quantile_estimates;

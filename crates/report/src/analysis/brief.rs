@@ -13,7 +13,6 @@ use crate::output_correlation::conditional_yield;
 use crate::overview::verdict;
 use crate::requirement::loud;
 use sensitol::analysis::CharacteristicAnalysis;
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::verdict::Verdict;
 
 /// Most characteristics that all have a line at the end of a report, and most lines there. More would push the last section off the screen.
@@ -56,7 +55,7 @@ impl Report {
     /// Line of the share that keeps all limits at once. None if it is not required.
     fn joint_line(&self) -> Option<Line> {
         let judged = self.analysis.joint_requirement?;
-        let Requirement::Yield(target) = judged.requirement else { return None };
+        let target = judged.requirement.target_yield()?;
         let value = self.analysis.joint.map_or("unknown".to_owned(), |joint| yielded(joint.value));
         Some(Line::from(format!("all limits {value} (target {}) ", target_yield(target))).and(loud(judged.verdict)))
     }

@@ -13,7 +13,6 @@ use crate::sweep::SweptReport;
 use crate::{AllocationReport, CompareReport, Head, RareReport, SimulationReport, SweepReport, WarningReport};
 use sensitol::summary::RunSummary;
 use sensitol_numeric::json_form::finite;
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::Verdict;
 
@@ -218,9 +217,9 @@ pub fn allocate_html(report: &AllocationReport) -> String {
             }
             for kept in kept {
                 let judged = kept.of.after.as_ref().unwrap_or(&kept.of.before);
-                match kept.of.requirement {
-                    Requirement::Yield(least) => (row.target, row.verdict) = (Some(least), Some(judged.verdict)),
-                    other => row.asked.extend(Asked::of(other, judged)),
+                match kept.of.requirement.target_yield() {
+                    Some(least) => (row.target, row.verdict) = (Some(least), Some(judged.verdict)),
+                    None => row.asked.extend(Asked::of(kept.of.requirement, judged)),
                 }
             }
             row

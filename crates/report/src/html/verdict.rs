@@ -7,11 +7,12 @@ use crate::WarningReport;
 use crate::analysis::analysis_document::CharacteristicSections;
 use crate::analysis::statistics::part;
 use crate::analysis::worst_case::{KnownWorstCase, WorstCaseKind};
-use crate::document::number::{FEWEST, index, plain, plural, significant, yielded};
+use crate::document::number::{FEWEST, index, known, plain, plural, significant, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::svg::escaped;
 use crate::figures::{Figures, Named};
 use crate::reject_rate::{rejects, yield_text};
+use crate::requirement::{demand, short_measure};
 use crate::sweep::{SweptPointReport, SweptReport};
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::rare::{Beyond, RareCharacteristic};
@@ -194,10 +195,7 @@ impl<'r> JudgedCharacteristic<'r> {
             let (a, b) = (rank(a), rank(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         })?;
-        let target = worst.requirements.iter().find_map(|judged| match judged.requirement {
-            Requirement::Yield(target) => Some(target),
-            _ => None,
-        });
+        let target = worst.requirements.iter().find_map(|judged| judged.requirement.target_yield());
         Some(Self {
             unit: one.unit.as_deref(),
             target,
@@ -245,18 +243,11 @@ pub(super) fn asked(judged: Vec<Judged>) -> Vec<Asked> {
 impl Asked {
     /// Returns the requirement, or None if it is a yield.
     pub(super) fn of(requirement: Requirement, judged: &Judged) -> Option<Self> {
-        let number = |value: f64| significant(value, 4);
-        let value = judged.value.and_then(finite);
-        let (what, found) = match requirement {
-            Requirement::Yield(_) => return None,
-            Requirement::Cpk(least) => (format!("a Cpk of {}", plain(least)), value.map(index)),
-            Requirement::Sigma(most) => (format!("a sigma of {}", plain(most)), value.map(number)),
-            Requirement::Rss | Requirement::WorstCase => {
-                let room = value.map(|value| format!("{} % of the room", number(100.0 * value)));
-                (format!("its limits by {}", requirement.name()), room)
-            }
-        };
-        Some(Self { what, found: found.unwrap_or_else(|| "unknown".to_owned()), verdict: judged.verdict })
+        if requirement.target_yield().is_some() {
+            return None;
+        }
+        let found = known(judged.value.and_then(finite), |value| short_measure(requirement, value));
+        Some(Self { what: demand(requirement), found, verdict: judged.verdict })
     }
 }
 
@@ -563,10 +554,7 @@ impl Table {
 
     /// Writes the row of all limits at once.
     fn together(&self, of: &Together<'_>, limited: usize) -> String {
-        let target = of.judged.and_then(|judged| match judged.requirement {
-            Requirement::Yield(target) => Some(target),
-            _ => None,
-        });
+        let target = of.judged.and_then(|judged| judged.requirement.target_yield());
         let rest = "<td></td>".repeat(usize::from(self.cpk) + usize::from(self.worst));
         format!(
             "<tr class=\"all\"><th scope=\"row\">{} together</th><td>{}</td><td>{}</td><td class=\"n\"><strong>{}</strong><br><small>{}</small></td><td class=\"n\">{}</td><td class=\"n\">{} ppm</td>{rest}</tr>\n",

@@ -39,7 +39,7 @@ pub(crate) fn requirement(
         let requirement = Requirement::Cpk(*target.get_ref());
         return requirement.checked(characteristic.limits().exist()).map(Some).map_err(|error| at(error.into()));
     }
-    let Some(require) = &entry.require else { return Ok(characteristic.target_yield().map(Requirement::Yield)) };
+    let Some(require) = &entry.require else { return Ok(characteristic.target()) };
     let at = |span: Range<usize>, found: StudyFault| fault(span, format!("{key}.require"), found);
     let (span, requirement) = match require.get_ref() {
         RequireEntry::Word(word) => (
