@@ -12,8 +12,8 @@ mod warnings;
 
 use std::cell::OnceCell;
 
-use crate::analysis::distribution::conditional;
-use crate::analysis::distribution::distribution_free::distribution_free;
+use crate::analysis::distribution::conditional::conditional_yields;
+use crate::analysis::distribution::distribution_free::distribution_free_yields;
 pub use crate::analysis::distribution::law_guard::{LawRefutation, LawTest};
 pub use crate::analysis::distribution::moment_basis::{Fit, NoFit, Surface};
 pub use crate::analysis::distribution::surface_law::SurfaceShares;
@@ -37,15 +37,16 @@ pub use crate::analysis::result::sampled_model::SampledModel;
 pub use crate::analysis::result::sampled_tail::SampledTail;
 pub use crate::analysis::result::serialisation::CharacteristicShape;
 pub use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, SobolIndices};
+use crate::analysis::result::stage_figures::with_stage;
 pub(crate) use crate::analysis::result::verification::TRUSTED;
 pub use crate::analysis::result::verification::{VarianceShare, Verification, VerificationKind};
 pub use crate::analysis::result::yield_source::YieldSource;
 use crate::analysis::sampling::accuracy_target;
 use crate::analysis::sampling::jump;
-use crate::analysis::sampling::measured_interval;
-use crate::analysis::sampling::model_sample;
+use crate::analysis::sampling::measured_interval::sampling_intervals;
+use crate::analysis::sampling::model_sample::model_samples;
 use crate::analysis::sampling::nominal_kink;
-use crate::analysis::sampling::recorded_failures;
+use crate::analysis::sampling::recorded_failures::recorded_failures;
 use crate::analysis::sampling::sample_budget::SampleBudget;
 pub use crate::analysis::sampling::tail_sample::most_tail_points;
 use crate::analysis::sampling::{tail_sample, verification_stage};
@@ -70,6 +71,7 @@ use crate::method::{
     climb_until,
 };
 use crate::problem::Problem;
+use crate::rare::RefutedTail;
 use crate::summary::{RunSummary, StopReason};
 use crate::warning::Warning;
 use sensitol_numeric::json_form::through;
@@ -150,9 +152,8 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 /// [`analyze`] with reports of progress and a way to stop.
 pub fn analyze_with(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
     at_any_size(problem, run, |problem, run| {
-        let (mut analysis, findings) = analyze_keeping(problem, options, run)?;
-        analysis.complete(&findings, problem, options, run);
-        Ok(analysis)
+        let (analysis, findings) = analyze_keeping(problem, options, run)?;
+        Ok(analysis.completed(&findings, problem, options, run))
     })
 }
 
@@ -226,7 +227,7 @@ fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>)
     // All further questions continue the ledger of the method. The budget is what the extremes leave of it.
     let budget = options.budget.map(|budget| budget.saturating_sub(extremes.evaluations()));
     let evaluator = Evaluator::new(problem, run).with_budget(budget).with_seed(seed).with_ledger(method);
-    let (mut characteristics, shares): (Vec<_>, Vec<_>) = of_all(problem, outcome).into_iter().unzip();
+    let (characteristics, shares): (Vec<_>, Vec<_>) = of_all(problem, outcome).into_iter().unzip();
     let signature = problem.function().signature();
     let verified = options.verifies(signature);
     // A cheap model that is verified is sampled anyway, at points that need no surface: no fallback is needed.
@@ -235,23 +236,34 @@ fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>)
         false => Vec::new(),
     };
     let kinked: Vec<usize> = kinks.iter().map(|kink| kink.characteristic).collect();
-    if signature.costly || !verified {
-        model_sample::fall_back(&evaluator, outcome, &kinked, &mut characteristics);
-    }
-    characteristics.iter_mut().zip(searched).for_each(|(one, extremes)| one.range.extremes = extremes);
+    let sampled = match signature.costly || !verified {
+        true => model_samples(&evaluator, outcome, &kinked, &characteristics),
+        false => Vec::new(),
+    };
+    let characteristics = with_stage(characteristics, sampled, CharacteristicAnalysis::with_model_sample);
+    let searched = searched.into_iter().enumerate();
+    let characteristics = with_stage(characteristics, searched, CharacteristicAnalysis::with_extremes);
     let mut found = match signature.costly && verified {
         true => jump::find(&evaluator, outcome, &characteristics),
         false => Vec::new(),
     };
     found.extend(kinks.into_iter().map(|kink| kink.warning));
     let mut left = SampleBudget::new(evaluator.remaining());
-    let refuted = verification_stage::verify(&evaluator, outcome, options, (&kinked, &mut left), &mut characteristics);
-    tail_sample::decide(&evaluator, outcome, options, &refuted, &mut characteristics);
-    found.extend(recorded_failures::add(problem, &mut characteristics));
+    let verified = verification_stage::verify(&evaluator, outcome, options, (&kinked, &mut left), &characteristics);
+    let refuted: Vec<RefutedTail> = (verified.iter())
+        .filter_map(|(c, of)| Some(RefutedTail { characteristic: *c, points: of.refuted.clone()? }))
+        .collect();
+    let characteristics = with_stage(characteristics, verified, CharacteristicAnalysis::with_verification);
+    let tails = tail_sample::decide(&evaluator, outcome, options, &refuted, &characteristics);
+    let characteristics = with_stage(characteristics, tails, CharacteristicAnalysis::with_tail_sample);
+    let recorded = recorded_failures(problem);
+    let failures: Vec<(usize, usize)> = recorded.iter().map(|(c, of)| (*c, of.failed)).collect();
+    let characteristics = with_stage(characteristics, failures, CharacteristicAnalysis::with_failures);
+    found.extend(recorded.into_iter().map(|(_, of)| of.warning));
     Checked { characteristics, shares, extremes, found, left, ledger: evaluator.into_ledger() }
 }
 
-/// The part of [`analyze_with`] that a search of tolerances needs for each of its trials. [`Analysis::complete`] adds the rest.
+/// The part of [`analyze_with`] that a search of tolerances needs for each of its trials. [`Analysis::completed`] adds the rest.
 pub(crate) fn analyze_keeping(
     problem: &Problem,
     options: &Options,
@@ -260,39 +272,41 @@ pub(crate) fn analyze_keeping(
     let begun = Instant::now();
     let outcome = run_method(problem, options, run)?;
     let seed = options.seed.unwrap_or(Options::SEED);
-    let Checked { mut characteristics, shares, extremes, found, mut left, ledger } =
-        check(problem, &outcome, options, run);
+    let Checked { characteristics, shares, extremes, found, mut left, ledger } = check(problem, &outcome, options, run);
     let bounded = options.verifies(problem.function().signature()) && !run.stopped();
     let bounds = || if bounded { bounds(problem, &outcome, &characteristics, run) } else { Vec::new() };
     let laws = || yield_selection::laws(problem, &outcome, options, &characteristics);
     // Both need matrices of all inputs. From four megabytes on they are computed one after the other, so that only one is in memory.
     let large = outcome.plan.varying().len().pow(2) * size_of::<f64>() > 4 << 20;
     let (bounds, laws) = if large { (bounds(), laws()) } else { join(bounds, laws) };
-    characteristics.iter_mut().zip(bounds).for_each(|(one, bounds)| one.range.bounds = bounds);
-    let mut laws = yield_selection::settle(problem, &outcome, options, &mut characteristics, laws);
+    let bounds = bounds.into_iter().enumerate();
+    let characteristics = with_stage(characteristics, bounds, CharacteristicAnalysis::with_bounds);
+    let (characteristics, mut laws) =
+        yield_selection::with_distributions(problem, &outcome, options, characteristics, laws);
     if !yield_selection::have_joint_yield(&characteristics) {
         // Nothing uses the distributions again, and with many inputs they are large.
         laws.clear();
     }
     // The list needs much memory with many inputs: it is made after the distributions were dropped.
-    for (c, (one, shares)) in characteristics.iter_mut().zip(shares).enumerate() {
-        one.contributions.interactions = interaction_listing::listed(problem, &outcome, c, shares.as_ref());
-    }
-    for (c, one) in characteristics.iter_mut().enumerate() {
-        if let Some(free) = distribution_free(problem, &outcome, options, &mut left, (c, one)) {
-            one.bound_yield(free);
-        }
-    }
+    let interactions = (shares.into_iter().enumerate())
+        .map(|(c, shares)| (c, interaction_listing::listed(problem, &outcome, c, shares.as_ref())));
+    let characteristics = with_stage(characteristics, interactions, CharacteristicAnalysis::with_interactions);
+    let free = distribution_free_yields(problem, &outcome, options, &mut left, &characteristics);
+    let characteristics = with_stage(characteristics, free, CharacteristicAnalysis::with_distribution_free_yield);
     let joint = (options.target_joint_yield)
         .and_then(|_| yield_selection::joint(problem, options, &mut left, &characteristics, &laws));
-    conditional::condition(problem, options, &mut left, &mut characteristics, &laws);
+    let conditional = conditional_yields(problem, options, &mut left, &characteristics, &laws);
+    let characteristics = with_stage(characteristics, conditional, CharacteristicAnalysis::with_conditional_yield);
     let spent = spent(&outcome, options, ledger.run);
     // The extremes do not affect shares: only the other questions decide whether a share is unfinished.
-    characteristics.iter_mut().for_each(|one| one.missing.unfinished = spent.unfinished());
+    let unfinished = spent.unfinished();
+    let characteristics: Vec<CharacteristicAnalysis> =
+        characteristics.into_iter().map(|one| one.with_open_points(unfinished)).collect();
     let non_repeatable = [ledger.non_repeatable, extremes.non_repeatable].concat();
     let warnings = warnings::of(problem, &outcome, &characteristics, &non_repeatable, found);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.ledger.evaluations());
-    let drawn = measured_interval::add_sampling_intervals(problem, &outcome, &mut characteristics, seed);
+    let (measured, drawn) = sampling_intervals(problem, &outcome, &characteristics, seed);
+    let characteristics = with_stage(characteristics, measured, CharacteristicAnalysis::with_sampling);
     let surface = Surface::of(&outcome, &characteristics);
     let analysis = Analysis {
         method: outcome.method,
@@ -318,19 +332,24 @@ pub(crate) fn analyze_keeping(
 
 impl Analysis {
     /// Adds the results that no other one needs: the joint yield, the correlations of characteristics, and Sobol' indices.
-    pub(crate) fn complete(&mut self, findings: &Findings, problem: &Problem, options: &Options, run: &Run<'_>) {
+    pub(crate) fn completed(self, findings: &Findings, problem: &Problem, options: &Options, run: &Run<'_>) -> Self {
         let begun = Instant::now();
         let Findings { outcome, laws, left } = findings;
         let mut left = *left;
-        if self.joint.is_none() {
-            self.joint = yield_selection::joint(problem, options, &mut left, &self.characteristics, laws);
-            self.joint_interval = self.joint.and_then(|joint| joint_interval(joint, &self.characteristics));
-        }
-        self.correlations =
-            output_correlation::correlations(problem, outcome, options, &mut left, &self.characteristics);
+        let Self { characteristics, joint, joint_interval: interval, run: spent, .. } = self;
+        let (joint, joint_interval) = match joint {
+            Some(_) => (joint, interval),
+            None => {
+                let joint = yield_selection::joint(problem, options, &mut left, &characteristics, laws);
+                (joint, joint.and_then(|joint| joint_interval(joint, &characteristics)))
+            }
+        };
+        let correlations = output_correlation::correlations(problem, outcome, options, &mut left, &characteristics);
         // Last, because warnings and accounts also read the contributions of a surface that is not trusted.
-        sobol_estimate::add(problem, outcome, options, &mut left, &mut self.characteristics, run);
-        self.run.wall += begun.elapsed();
+        let indices = sobol_estimate::indices(problem, outcome, options, &mut left, &characteristics, run);
+        let characteristics = with_stage(characteristics, indices, CharacteristicAnalysis::with_indices);
+        let run = RunSummary { wall: spent.wall + begun.elapsed(), ..spent };
+        Self { characteristics, joint, joint_interval, correlations, run, ..self }
     }
 }
 
@@ -410,11 +429,11 @@ fn of_all(problem: &Problem, outcome: &Outcome) -> Vec<(CharacteristicAnalysis, 
     // Only a choice from stock needs it, and it is large with many dimensions and characteristics.
     let dependence = OnceCell::new();
     let of = |c: usize| {
-        let (mut one, shares) = CharacteristicAnalysis::of(problem, outcome, c);
-        if problem.choice(c).is_some() {
-            one.leave_out_linear(&dependence.get_or_init(|| problem.dependence())[c]);
+        let (one, shares) = CharacteristicAnalysis::of(problem, outcome, c);
+        match problem.choice(c) {
+            Some(_) => (one.without_linear(&dependence.get_or_init(|| problem.dependence())[c]), shares),
+            None => (one, shares),
         }
-        (one, shares)
     };
     (0..problem.characteristics().len()).map(of).collect()
 }

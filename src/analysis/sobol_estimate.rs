@@ -14,6 +14,7 @@ use std::collections::HashMap;
 
 use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, SobolIndices};
+use crate::analysis::result::stage_figures::IndexFigures;
 use crate::analysis::result::verification::{UNTRUSTED, VerificationKind};
 use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::assembly::Run;
@@ -27,20 +28,21 @@ use sensitol_numeric::correlation::factors;
 /// First order and total of one factor.
 type Pair = (Option<EstimatedShare>, Option<EstimatedShare>);
 
-/// Adds the indices of every characteristic. Removes the contributions of a surface that a sample of the model does not trust.
-pub(super) fn add(
+/// Indices of the characteristics that vary, by their places.
+pub(super) fn indices(
     problem: &Problem,
     outcome: &Outcome,
     options: &Options,
     left: &mut SampleBudget,
-    characteristics: &mut [CharacteristicAnalysis],
+    characteristics: &[CharacteristicAnalysis],
     run: &Run<'_>,
-) {
+) -> Vec<(usize, IndexFigures)> {
     let varying = outcome.plan.varying();
     let places = factors(problem.correlation(), varying);
     let factors: Vec<Vec<usize>> =
         places.iter().map(|places| places.iter().map(|&place| varying[place]).collect()).collect();
-    for (c, one) in characteristics.iter_mut().enumerate() {
+    let mut all = Vec::new();
+    for (c, one) in characteristics.iter().enumerate() {
         if one.moments.is_none_or(|moments| moments.sigma() <= 0.0) {
             continue;
         }
@@ -50,11 +52,10 @@ pub(super) fn add(
             true => of_model(problem, (c, options), left, one, &factors, run),
         };
         // A method of first order reports the contributions of its own sum of squares, regardless of the model.
-        if distrusted && outcome.order == Order::Second {
-            forget(one);
-        }
-        keep(problem, one, &factors, source, found);
+        let distrusted = distrusted && outcome.order == Order::Second;
+        all.push((c, IndexFigures { distrusted, ..index_figures(problem, &factors, source, found) }));
     }
+    all
 }
 
 impl CharacteristicAnalysis {
@@ -77,34 +78,19 @@ impl CharacteristicAnalysis {
     }
 }
 
-/// Sets contributions that differ from those of the model to unknown.
-fn forget(one: &mut CharacteristicAnalysis) {
-    for row in &mut one.sensitivities {
-        (row.linear_share, row.curvature_share) = (None, None);
-    }
-    one.contributions.interactions.forget_shares();
-    one.contributions.left_out_share = None;
-}
-
-/// Stores the indices of dimensions and of factors.
-fn keep(
-    problem: &Problem,
-    one: &mut CharacteristicAnalysis,
-    factors: &[Vec<usize>],
-    source: IndexSource,
-    found: Vec<Pair>,
-) {
+/// Indices of dimensions and of factors.
+fn index_figures(problem: &Problem, factors: &[Vec<usize>], source: IndexSource, found: Vec<Pair>) -> IndexFigures {
     let name = |&d: &usize| problem.dimensions()[d].name().to_owned();
     let firsts: Option<Vec<f64>> = found.iter().map(|(first, _)| Some(first.as_ref()?.value)).collect();
-    let mut together = Vec::new();
+    let (mut single, mut together) = (Vec::new(), Vec::new());
     for (factor, (first_order, total)) in factors.iter().zip(found) {
         match factor[..] {
-            [d] => (one.sensitivities[d].first_order, one.sensitivities[d].total) = (first_order, total),
+            [d] => single.push((d, first_order, total)),
             _ => together.push(FactorIndices { dimensions: factor.iter().map(name).collect(), first_order, total }),
         }
     }
     let interactions = firsts.map(|firsts| 1.0 - firsts.iter().sum::<f64>());
-    one.contributions.indices = Some(SobolIndices { source, factors: together, interactions });
+    IndexFigures { indices: SobolIndices { source, factors: together, interactions }, single, distrusted: false }
 }
 
 /// Indices from the contributions of the surface: those inside of a factor, and those of every interaction with another.

@@ -34,3 +34,49 @@ fn a_kind_of_requirement_stands_in_few_files() {
         );
     }
 }
+
+/// Parts of the figures of a characteristic that stages add to.
+const PARTS: [&str; 6] = ["distribution", "evidence", "range", "contributions", "missing", "linear"];
+
+/// Assignments into the figures of a characteristic, as `name.evidence.law =`, line by line.
+fn assignments(code: &str) -> Vec<String> {
+    let written = |line: &str| {
+        PARTS.iter().any(|part| {
+            line.split(&format!(".{part}.")).skip(1).any(|rest| {
+                let rest = rest.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_' || c == '.').trim_start();
+                let rest = rest.trim_start_matches(['+', '-']);
+                rest.starts_with('=') && !rest.starts_with("==") && !rest.starts_with("=>")
+            })
+        })
+    };
+    code.lines().filter(|line| written(line)).map(|line| line.trim().to_owned()).collect()
+}
+
+#[test]
+fn no_stage_writes_into_an_earlier_result() {
+    for file in sources().into_iter().filter(|file| ["engine", "report", "cli"].contains(&file.package.as_str())) {
+        let code = file.code();
+        for form in [
+            "&mut CharacteristicAnalysis",
+            "&mut [CharacteristicAnalysis]",
+            "&mut Vec<CharacteristicAnalysis>",
+            "&mut Analysis",
+        ] {
+            assert!(!code.contains(form), "{} takes {form}: return a value to result/stage_figures.rs", file.name());
+        }
+        // The shortened list of a report replaces its remainder.
+        if file.name().starts_with("src/analysis/") && file.name() != "src/analysis/interaction_truncation.rs" {
+            let found = assignments(&code);
+            assert!(found.is_empty(), "{} writes {found:?}: return a value to result/stage_figures.rs", file.name());
+        }
+    }
+}
+
+#[test]
+fn the_check_of_assignments_sees_every_form() {
+    assert_eq!(assignments("one.evidence.law = Some(law);").len(), 1);
+    assert_eq!(assignments("    one.missing.without_value += 1;").len(), 1);
+    assert_eq!(assignments("characteristics[c].distribution.conditional = found;").len(), 1);
+    assert_eq!(assignments("let same = one.evidence.law == other; if a.range.bounds.is_none() {}"), [""; 0]);
+    assert_eq!(assignments("let of = one.evidence.sampled.clone();"), [""; 0]);
+}

@@ -197,9 +197,7 @@ impl Driver<'_> {
         let Some(findings) = &trial.findings else {
             return self.completed(trial.analysis.clone(), of_station, &trial.problem);
         };
-        let mut analysis = trial.analysis.clone();
-        analysis.complete(findings, &trial.problem, &self.options.analysis, self.run);
-        analysis
+        trial.analysis.clone().completed(findings, &trial.problem, &self.options.analysis, self.run)
     }
 
     /// True if the conditions of an optimum are sufficient.

@@ -184,12 +184,11 @@ impl Driver<'_> {
     /// Analysis of a linearization point, with the results that are only reported.
     pub(in crate::allocation) fn completed(
         &self,
-        mut analysis: Analysis,
+        analysis: Analysis,
         findings: &Findings,
         problem: &Problem,
     ) -> Analysis {
-        analysis.complete(findings, problem, &self.options.derivatives(problem), self.run);
-        analysis
+        analysis.completed(findings, problem, &self.options.derivatives(problem), self.run)
     }
 
     /// Corrects moments by samples of the model, if its verification refutes the surface, the requirement uses moments,

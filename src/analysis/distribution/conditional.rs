@@ -24,18 +24,19 @@ const ROUGH: f64 = 1e-2;
 /// Error of a conditional yield, as a part of the yield itself, above which points of a cheap model are counted too.
 const ROUGH_SHARE: f64 = 0.5;
 
-/// Sets the conditional yield of every characteristic that is given another. It stays None if the yields or their errors are unknown.
-pub(in crate::analysis) fn condition(
+/// Conditional yields of the characteristics that are given another, by their places. None if the yields or their errors are unknown.
+pub(in crate::analysis) fn conditional_yields(
     problem: &Problem,
     options: &Options,
     left: &mut SampleBudget,
-    characteristics: &mut [CharacteristicAnalysis],
+    characteristics: &[CharacteristicAnalysis],
     laws: &[Option<SurfaceLaw>],
-) {
+) -> Vec<(usize, Option<ConditionalYield>)> {
+    let mut found = Vec::new();
     for [c, given] in conditions(problem) {
-        let found = of_pair(problem, options, left, characteristics, laws, [c, given]);
-        characteristics[c].distribution.conditional = found;
+        found.push((c, of_pair(problem, options, left, characteristics, laws, [c, given])));
     }
+    found
 }
 
 fn of_pair(

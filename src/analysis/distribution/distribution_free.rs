@@ -25,8 +25,20 @@ use sensitol_numeric::surrogate::Univariate;
 /// that falls from 1 to 0 over half a sigma of the other inputs has some values on its slope where the band is a sigma wide.
 const PLACES: u32 = 65;
 
+/// Bounds of the yields by the places of their characteristics.
+pub(in crate::analysis) fn distribution_free_yields(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    left: &mut SampleBudget,
+    characteristics: &[CharacteristicAnalysis],
+) -> Vec<(usize, DistributionFreeYield)> {
+    let each = characteristics.iter().enumerate();
+    each.filter_map(|(c, one)| Some((c, distribution_free(problem, outcome, options, left, (c, one))?))).collect()
+}
+
 /// Bounds of the yield of a characteristic. Returns None if it has no limits, or if all of its dimensions have a distribution.
-pub(in crate::analysis) fn distribution_free(
+fn distribution_free(
     problem: &Problem,
     outcome: &Outcome,
     options: &Options,

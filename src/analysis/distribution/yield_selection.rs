@@ -23,6 +23,7 @@ use crate::analysis::distribution::moment_shift::error_of_shares;
 use crate::analysis::distribution::quantile_selection::QuantileSelection;
 use crate::analysis::distribution::surface_law::{GuardedLaw, LawRequest};
 use crate::analysis::result::quantile_estimates::QuantileEstimates;
+use crate::analysis::result::stage_figures::{QuantileFigures, YieldFigures};
 use crate::analysis::result::verification::{Verification, VerificationKind};
 use crate::analysis::result::yield_error::of_sides;
 use crate::analysis::result::yield_source::YieldSource;
@@ -30,7 +31,7 @@ use crate::analysis::sampling::measured_interval::samples_of;
 use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::estimate::{Verified, common_rejects, most_points_together};
 use crate::extremes::keeps_by_proof;
-use crate::method::{ErrorEstimate, Options, Outcome};
+use crate::method::{Options, Outcome};
 use crate::problem::Problem;
 use sensitol_numeric::capability::{Capability, Law};
 use sensitol_numeric::characteristic::SpecLimits;
@@ -125,56 +126,75 @@ fn request<'a>(
     LawRequest { problem, outcome, c, seed, fit: fit(one), verification: one.evidence.verification.as_ref() }
 }
 
-/// Chooses the source of the yield of every characteristic, and sets capability and error of the yield accordingly. Returns the surface
-/// distributions. Evaluates nothing of the model.
-pub(in crate::analysis) fn settle(
+/// Characteristics with quantiles, yields and risks of inspections, and the surface distributions. Evaluates nothing of the model.
+pub(in crate::analysis) fn with_distributions(
     problem: &Problem,
     outcome: &Outcome,
     options: &Options,
-    characteristics: &mut [CharacteristicAnalysis],
+    characteristics: Vec<CharacteristicAnalysis>,
     found: Vec<Option<SharesByLaw>>,
-) -> Vec<Option<SurfaceLaw>> {
-    let mut laws: Vec<Option<SurfaceLaw>> = Vec::new();
-    for ((c, one), found) in characteristics.iter_mut().enumerate().zip(found) {
-        one.evidence.pearson = one.distribution.capability;
-        laws.push(None);
-        if one.moments.is_none() {
-            continue;
-        }
-        let (mut guarded, density) = found.map_or((None, None), |SharesByLaw { law, density }| (Some(law), density));
-        let measured = !samples_of(problem, outcome, c).is_empty();
-        if let Some(probability) = options.coverage {
-            let found = QuantileSelection::of(one, guarded.as_ref(), measured).map(|of| covered(&of, probability));
-            // Quantiles that give no intervals refute the distribution: points of the surface replace it.
-            one.distribution.coverage = found.and_then(|found| {
-                found.unwrap_or_else(|faulty| {
-                    guarded = GuardedLaw::without(request(problem, outcome, options, (c, one)), &faulty);
-                    let of = QuantileSelection::of(one, guarded.as_ref(), measured);
-                    of.and_then(|of| covered(&of, probability).unwrap_or(None))
-                })
-            });
-        }
-        let limits = one.characteristic.limits();
-        one.distribution.quantiles = QuantileSelection::of(one, guarded.as_ref(), measured)
-            .map(|of| QuantileEstimates::new(of.source(), of.reported(), limits));
-        one.evidence.density = sampled_density(one, options).or(density);
-        one.evidence.surface_law = guarded.as_ref().map(|law| law.shares);
-        let points = guarded.as_mut().and_then(|law| law.points.take());
-        laws[c] = guarded.and_then(|law| law.law);
-        let Some(found) = rejected(problem, outcome, c, one, laws[c].as_ref()) else { continue };
-        // A side without rejects by proof needs no estimate.
-        let proven = proven_sides(problem, outcome, c, one, &found);
-        let found = found.excluding(proven).bounded();
-        one.distribution.reject_intervals = found.intervals;
-        one.distribution.yield_source = one.characteristic.limits().exist().then_some(found.source);
-        one.distribution.capability = capability(one, found.beyond);
-        if let Some(estimate) = one.error_estimate.take() {
-            one.error_estimate =
-                Some(ErrorEstimate { yield_: found.error.filter(|error| error.is_finite()), ..estimate });
-        }
-        one.distribution.inspection = inspected(one, problem.kept_limits(c), laws[c].as_ref(), points.as_ref());
+) -> (Vec<CharacteristicAnalysis>, Vec<Option<SurfaceLaw>>) {
+    let all = characteristics.into_iter().enumerate().zip(found);
+    all.map(|((c, one), found)| with_distribution(problem, outcome, options, (c, one), found)).unzip()
+}
+
+/// Characteristic with the quantiles, the yield and the risks of the inspection of its best sources.
+fn with_distribution(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    (c, one): (usize, CharacteristicAnalysis),
+    found: Option<SharesByLaw>,
+) -> (CharacteristicAnalysis, Option<SurfaceLaw>) {
+    if one.moments.is_none() {
+        return (one, None);
     }
-    laws
+    let (quantiles, guarded) = quantile_figures(problem, outcome, options, (c, &one), found);
+    let one = one.with_quantiles(quantiles);
+    let (law, points) = guarded.map_or((None, None), |GuardedLaw { law, points, .. }| (law, points));
+    let Some(found) = rejected(problem, outcome, c, &one, law.as_ref()) else { return (one, law) };
+    // A side without rejects by proof needs no estimate.
+    let proven = proven_sides(problem, outcome, c, &one, &found);
+    let found = found.excluding(proven).bounded();
+    let yield_ = YieldFigures {
+        source: one.characteristic.limits().exist().then_some(found.source),
+        capability: capability(&one, found.beyond),
+        reject_intervals: found.intervals,
+        error: found.error.filter(|error| error.is_finite()),
+    };
+    let one = one.with_yield(yield_);
+    let inspection = inspected(&one, problem.kept_limits(c), law.as_ref(), points.as_ref());
+    (one.with_inspection(inspection), law)
+}
+
+/// Quantiles and coverage intervals with the distribution of the surface that they do not refute.
+fn quantile_figures(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    (c, one): (usize, &CharacteristicAnalysis),
+    found: Option<SharesByLaw>,
+) -> (QuantileFigures, Option<GuardedLaw>) {
+    let (mut guarded, density) = found.map_or((None, None), |SharesByLaw { law, density }| (Some(law), density));
+    let measured = !samples_of(problem, outcome, c).is_empty();
+    let mut coverage = None;
+    if let Some(probability) = options.coverage {
+        let found = QuantileSelection::of(one, guarded.as_ref(), measured).map(|of| covered(&of, probability));
+        // Quantiles that give no intervals refute the distribution: points of the surface replace it.
+        coverage = found.and_then(|found| {
+            found.unwrap_or_else(|faulty| {
+                guarded = GuardedLaw::without(request(problem, outcome, options, (c, one)), &faulty);
+                let of = QuantileSelection::of(one, guarded.as_ref(), measured);
+                of.and_then(|of| covered(&of, probability).unwrap_or(None))
+            })
+        });
+    }
+    let limits = one.characteristic.limits();
+    let quantiles = QuantileSelection::of(one, guarded.as_ref(), measured)
+        .map(|of| QuantileEstimates::new(of.source(), of.reported(), limits));
+    let density = sampled_density(one, options).or(density);
+    let surface_law = guarded.as_ref().map(|law| law.shares);
+    (QuantileFigures { coverage, quantiles, density, surface_law }, guarded)
 }
 
 /// Share of assemblies that keep the limits of all characteristics:

@@ -173,33 +173,6 @@ impl CharacteristicAnalysis {
         Some(verdict::share(verdict::losing(around, lost)))
     }
 
-    /// Replaces the yield by bounds over all distributions of some dimensions. That of the distributions that stand in for them says nothing.
-    pub(in crate::analysis) fn bound_yield(&mut self, free: DistributionFreeYield) {
-        let known = self.distribution.capability.take();
-        self.distribution = DistributionFigures {
-            yield_source: None,
-            capability: known.map(|of| Capability { below: None, above: None, ..of }),
-            reject_intervals: [None; 2],
-            inspection: None,
-            distribution_free_yield: Some(free),
-            ..self.distribution.clone()
-        };
-        if let Some(estimate) = &mut self.error_estimate {
-            estimate.yield_ = None;
-        }
-    }
-
-    /// Leaves out the slopes and the figures of a linear model, which do not exist where values are chosen from stock: difference quotients
-    /// over the jumps of a choice have any size and sign. A dimension that it does not depend on keeps its slope of 0.
-    pub(crate) fn leave_out_linear(&mut self, depends: &[bool]) {
-        for (one, _) in self.sensitivities.iter_mut().zip(depends).filter(|(_, depends)| **depends) {
-            (one.first, one.second, one.rounding, one.exact) = (None, None, None, false);
-        }
-        self.linear.six_sigma = None;
-        self.range.worst_case = None;
-        (self.linear.rss, self.linear.inflated_rss, self.linear.mean_shift_rss) = (None, None, None);
-    }
-
     /// Judges a requirement, which need not be the characteristic's own.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         Judged::by(requirement, self).unless(self.missing.unfinished)

@@ -133,8 +133,9 @@ impl InteractionList {
     }
 
     /// Sets all shares of the variance to unknown.
-    pub(in crate::analysis) fn forget_shares(&mut self) {
+    pub(in crate::analysis) fn without_shares(mut self) -> Self {
         self.rows.iter_mut().for_each(|row| row.share = f64::NAN);
+        self
     }
 }
 

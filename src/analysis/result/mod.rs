@@ -20,6 +20,7 @@ pub(in crate::analysis) mod sampled_model;
 pub(in crate::analysis) mod sampled_tail;
 pub(in crate::analysis) mod serialisation;
 pub(in crate::analysis) mod sobol_indices;
+pub(in crate::analysis) mod stage_figures;
 pub(in crate::analysis) mod variance_share;
 pub(in crate::analysis) mod verification;
 pub(in crate::analysis) mod yield_error;

@@ -4,6 +4,7 @@
 //! ([`crate::analysis::sampling::bootstrap`]). The reject rate has the interval of counts ([`MeasuredBasis`]). If other inputs vary too, it is widened to that
 //! of the resamples, which follow the surface.
 
+use crate::analysis::result::stage_figures::SamplingFigures;
 use crate::analysis::sampling::bootstrap::{ResampledIntervals, resampled_intervals};
 use crate::analysis::{CharacteristicAnalysis, SamplingInterval};
 use crate::method::Outcome;
@@ -20,16 +21,17 @@ pub(in crate::analysis) fn samples_of(problem: &Problem, outcome: &Outcome, c: u
     samples
 }
 
-/// Adds the intervals of every characteristic that depends on measured samples. Returns true if samples were drawn anew for it.
-pub(in crate::analysis) fn add_sampling_intervals(
+/// Intervals of the characteristics that depend on measured samples, by their places, and true if samples were drawn anew for them.
+pub(in crate::analysis) fn sampling_intervals(
     problem: &Problem,
     outcome: &Outcome,
-    characteristics: &mut [CharacteristicAnalysis],
+    characteristics: &[CharacteristicAnalysis],
     seed: u64,
-) -> bool {
+) -> (Vec<(usize, SamplingFigures)>, bool) {
     let resampled = resampled_intervals(problem, outcome, characteristics, seed);
     let drawn = resampled.iter().any(Option::is_some);
-    for ((c, one), resampled) in characteristics.iter_mut().enumerate().zip(resampled) {
+    let mut found = Vec::new();
+    for ((c, one), resampled) in characteristics.iter().enumerate().zip(resampled) {
         let samples = samples_of(problem, outcome, c);
         if samples.is_empty() || one.moments.is_none() {
             continue;
@@ -46,11 +48,10 @@ pub(in crate::analysis) fn add_sampling_intervals(
             ..by_resamples(resampled)
         };
         let sides = one.distribution.capability.map_or([None; 2], |of| [of.below, of.above]);
-        one.distribution.reject_intervals =
-            sides_with_samples(sides, one.distribution.reject_intervals, interval.rejected);
-        one.evidence.sampling = Some(interval);
+        let reject_intervals = sides_with_samples(sides, one.distribution.reject_intervals, interval.rejected);
+        found.push((c, SamplingFigures { sampling: interval, reject_intervals }));
     }
-    drawn
+    (found, drawn)
 }
 
 /// Intervals of all figures except the reject rate.

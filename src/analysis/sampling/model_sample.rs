@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::analysis::result::stage_figures::{ModelSampleFigures, MomentFigures};
 use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::sampling::accuracy_target::{MORE, PART, excess};
 use crate::analysis::sampling::cross_fit::{Beside, CrossFit, CrossFitFigures};
@@ -13,7 +14,7 @@ use crate::evaluation::{Evaluator, Ledger};
 use crate::method::{AutoAccount, ErrorEstimate, ErrorSource, Outcome};
 use crate::simulation::{REPLICATES, SimulatedCharacteristic, SimulationOptions, simulate_beside};
 use crate::warning::Figure;
-use sensitol_numeric::capability::{Capability, EstimatedQuantile, Law};
+use sensitol_numeric::capability::EstimatedQuantile;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
 
@@ -29,22 +30,26 @@ const STRIDES: usize = 512;
 /// Part of a costly model's budget that strides may use (one in four), because the points of its sample are others.
 const COSTLY_PART: usize = 4;
 
-/// Replaces moments that miss the requested accuracy by those of points of the model, if the budget allows it. Those of `kinked`
-/// characteristics, whose surfaces are wrong for certain, are replaced without a budget too: by as many points as the method has evaluated.
-pub(in crate::analysis) fn fall_back(
+/// Figures of points of the model for the characteristics whose moments miss the requested accuracy, by their places, if the budget allows
+/// it. The `kinked` characteristics, whose surfaces are wrong for certain, have them without a budget too: from as many points as the method
+/// has evaluated.
+pub(in crate::analysis) fn model_samples(
     evaluator: &Evaluator<'_>,
     outcome: &Outcome,
     kinked: &[usize],
-    characteristics: &mut [CharacteristicAnalysis],
-) {
+    characteristics: &[CharacteristicAnalysis],
+) -> Vec<(usize, ModelSampleFigures)> {
+    let nothing = Vec::new();
     let (problem, run, seed) = (evaluator.problem(), evaluator.run(), evaluator.seed());
     let begun = evaluator.summary().evaluations;
     let spent = || evaluator.summary().evaluations - begun;
-    let Some(climbed) = outcome.climbed.as_ref().filter(|_| outcome.evaluated.stopped().is_none()) else { return };
+    let Some(climbed) = outcome.climbed.as_ref().filter(|_| outcome.evaluated.stopped().is_none()) else {
+        return nothing;
+    };
     let is_short = |&c: &usize| kinked.contains(&c) || shortfall(&characteristics[c], climbed, c).is_some();
     let short: Vec<usize> = (0..characteristics.len()).filter(is_short).collect();
     if short.is_empty() {
-        return;
+        return nothing;
     }
     let remembered;
     let costly = problem.function().signature().costly;
@@ -56,13 +61,13 @@ pub(in crate::analysis) fn fall_back(
         (false, left) => left.unwrap_or(MOST).min(MOST),
     };
     if most < FEWEST {
-        return;
+        return nothing;
     }
     let strided = if costly { most as usize / COSTLY_PART } else { most as usize }.min(STRIDES);
     // No regression follows a kink.
     let strided = if short.iter().all(|c| kinked.contains(c)) { 0 } else { strided };
     let problem = match stride(evaluator, outcome, climbed, strided, &short, characteristics) {
-        Strided::Enough => return,
+        Strided::Enough(found) => return found,
         Strided::Known(answers) => {
             // The sample begins with these points. They are not evaluated again.
             remembered = problem.replacing(0, problem.dimensions()[0].clone(), Arc::new(*answers));
@@ -88,29 +93,31 @@ pub(in crate::analysis) fn fall_back(
         // Sobol' points come in powers of two: the greatest power that is allowed.
         let points = if sampler == Sampler::Sobol { (samples + 1).next_power_of_two() / 2 } else { samples };
         let wish = SimulationOptions { samples: points.max(2), sampler, seed, ..SimulationOptions::default() };
-        let Ok(found) = simulate_beside(problem, &wish, outcome, run) else { return };
+        let Ok(found) = simulate_beside(problem, &wish, outcome, run) else { return nothing };
         evaluator.merge(Ledger { run: found.run, non_repeatable: found.non_repeatable.clone() });
         if found.run.unfinished() {
-            return;
+            return nothing;
         }
         let enough = short.iter().all(|&c| known(&found.characteristics[c], climbed));
         let last = enough || spent() + MORE as u64 * samples > most;
         if last {
-            for &c in &short {
+            let of = |&c: &usize| {
                 let depends = outcome.plan.varying().iter().copied().filter(|&d| outcome.plan.depends(c, d));
                 let ranks = recorded.ranks(c, &depends.collect::<Vec<usize>>());
-                replace(&mut characteristics[c], climbed, c, (&found.characteristics[c], few_scramblings), ranks);
-            }
-            return;
+                let found = (&found.characteristics[c], few_scramblings);
+                Some((c, of_simulation(&characteristics[c], climbed, c, found, ranks)?))
+            };
+            return short.iter().filter_map(of).collect();
         }
         samples *= MORE as u64;
     }
+    nothing
 }
 
 /// Result of the attempt with strides.
 enum Strided {
-    /// Every figure has the requested accuracy, or the run was stopped.
-    Enough,
+    /// Every figure has the requested accuracy. Empty if the run was stopped before.
+    Enough(Vec<(usize, ModelSampleFigures)>),
     /// The requested accuracy was not reached. Contains the answers of the model.
     Known(Box<KnownAnswersFunction>),
     Nothing,
@@ -123,27 +130,25 @@ fn stride(
     climbed: &AutoAccount,
     most: usize,
     short: &[usize],
-    characteristics: &mut [CharacteristicAnalysis],
+    characteristics: &[CharacteristicAnalysis],
 ) -> Strided {
     let strides =
         CrossFit::new(evaluator.problem(), outcome, evaluator.seed()).filter(|strides| strides.next(most) > 0);
     let Some(mut strides) = strides else { return Strided::Nothing };
     let mut beside: Vec<Vec<Beside<'_>>> = short.iter().map(|&c| strides.beside(c)).collect();
-    let mut enough = false;
-    while !enough && strides.next(most) > 0 {
-        enough = !strides.draw(most, evaluator);
-        if enough {
-            break;
+    while strides.next(most) > 0 {
+        if !strides.draw(most, evaluator) {
+            return Strided::Enough(Vec::new());
         }
         let found: Option<Vec<CrossFitFigures>> = (short.iter().zip(&mut beside))
             .map(|(&c, beside)| strides.found(c, beside, left(&characteristics[c], climbed, c)))
             .collect();
         if let Some(found) = found.filter(|found| found.iter().all(|found| found.is_known(climbed))) {
-            short.iter().zip(found).for_each(|(&c, found)| take(&mut characteristics[c], found));
-            enough = true;
+            let of = |(&c, found): (&usize, CrossFitFigures)| (c, model_sample_figures(&characteristics[c], found));
+            return Strided::Enough(short.iter().zip(found).map(of).collect());
         }
     }
-    if enough { Strided::Enough } else { Strided::Known(Box::new(strides.answers)) }
+    Strided::Known(Box::new(strides.answers))
 }
 
 impl CrossFitFigures {
@@ -197,16 +202,15 @@ fn known(found: &SimulatedCharacteristic, climbed: &AutoAccount) -> bool {
     within(sigma, climbed.accuracy) && climbed.accuracies.wanted().into_iter().all(each)
 }
 
-fn replace(
-    one: &mut CharacteristicAnalysis,
+/// Figures of a simulation. Returns None if a moment is unknown.
+fn of_simulation(
+    one: &CharacteristicAnalysis,
     climbed: &AutoAccount,
     c: usize,
     (found, few): (&SimulatedCharacteristic, f64),
     ranks: Vec<(usize, Share)>,
-) {
-    let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return };
-    let (Some(skewness), Some(kurtosis)) = (found.skewness, found.kurtosis) else { return };
-    let moments = [mean, sigma, skewness, kurtosis];
+) -> Option<ModelSampleFigures> {
+    let moments = [found.mean?, found.sigma?, found.skewness?, found.kurtosis?];
     // Widened as the errors of a verification are: few randomisations, and few points that carry a power, determine their own scatter
     // badly.
     let carried = found.control.map(|control| control.carried);
@@ -229,7 +233,7 @@ fn replace(
         histogram: found.histogram.clone(),
         ranks,
     };
-    take(one, CrossFitFigures { moments, sampled });
+    Some(model_sample_figures(one, CrossFitFigures { moments, sampled }))
 }
 
 /// Share of the variance that the surface does not explain, by the check points.
@@ -239,27 +243,21 @@ fn left(one: &CharacteristicAnalysis, climbed: &AutoAccount, c: usize) -> f64 {
     checked.map_or(0.0, |off| if variance > 0.0 { (off / variance).min(1.0) } else { 1.0 })
 }
 
-/// Replaces the surface's figures by the model's.
-fn take(one: &mut CharacteristicAnalysis, CrossFitFigures { moments, sampled }: CrossFitFigures) {
+/// Figures of points of the model with their errors.
+fn model_sample_figures(
+    one: &CharacteristicAnalysis,
+    CrossFitFigures { moments, sampled }: CrossFitFigures,
+) -> ModelSampleFigures {
     let [mean, sigma, skewness, kurtosis] = moments.map(|of| of.value);
-    let moments = Moments::new(mean, sigma, skewness, kurtosis - 3.0);
     let limits = one.characteristic.limits();
-    let capability = |law: &Law| Capability::of(law, moments.mean(), moments.sigma(), limits);
-    let law = Law::fit(&moments);
-    one.distribution.capability = law.as_ref().ok().map(capability);
-    one.evidence.normal = Law::normal(&moments).ok().map(|law| capability(&law));
+    let moments = MomentFigures::of(Moments::new(mean, sigma, skewness, kurtosis - 3.0), limits);
     let sources = vec![ErrorSource::Sampled { points: sampled.samples }];
     let [mean, sigma, skewness, kurtosis] = sampled.standard_errors;
     let estimate = ErrorEstimate { mean, sigma, skewness, kurtosis, yield_: None, sources };
     // Error of the fit of four moments: its distance from the sample's yield, and the error of that yield.
-    let of_fit = one.distribution.capability.and_then(|capability| capability.yield_()).zip(sampled.yield_);
+    let of_fit = moments.capability.and_then(|capability| capability.yield_()).zip(sampled.yield_);
     let off = of_fit.map(|(fit, (value, interval))| (fit - value).abs() + one_error(value, interval));
-    let of_moments = of_yield(&estimate, &moments, limits);
-    one.error_estimate =
-        Some(ErrorEstimate { yield_: of_moments.map(|error| error.max(off.unwrap_or(0.0))), ..estimate });
-    one.evidence.law = Some(law);
-    one.moments = Some(moments);
-    one.evidence.sampled = None;
-    one.missing.without_value += sampled.failed as usize;
-    one.evidence.model_sampled = Some(sampled);
+    let of_moments = of_yield(&estimate, &moments.moments, limits);
+    let yield_ = of_moments.map(|error| error.max(off.unwrap_or(0.0)));
+    ModelSampleFigures { moments, error_estimate: ErrorEstimate { yield_, ..estimate }, sampled }
 }

@@ -1,27 +1,32 @@
 //! Failed points of earlier runs, which the journal of an external model holds.
 
-use crate::analysis::CharacteristicAnalysis;
 use crate::assembly::RecordedFailure;
 use crate::problem::Problem;
 use crate::warning::Warning;
 
-/// Adds the recorded failures within all tolerance bands to the points without a value of each characteristic, and returns a warning for
-/// each that has some. Points that this run evaluated itself are counted already. Call it after the last evaluation.
-pub(in crate::analysis) fn add(problem: &Problem, characteristics: &mut [CharacteristicAnalysis]) -> Vec<Warning> {
+/// Number of recorded failures of a characteristic, and a warning of them.
+pub(in crate::analysis) struct RecordedFailures {
+    pub(in crate::analysis) failed: usize,
+    pub(in crate::analysis) warning: Warning,
+}
+
+/// Recorded failures within all tolerance bands, by the places of the characteristics that have some. Points that this run evaluated itself
+/// are counted already. Call it after the last evaluation.
+pub(in crate::analysis) fn recorded_failures(problem: &Problem) -> Vec<(usize, RecordedFailures)> {
     let mut recorded = problem.function().recorded_failures(problem.outputs());
     recorded.retain(|failure| failure.is_within(problem.dimensions()));
-    let mut warnings = Vec::new();
-    for (one, &output) in characteristics.iter_mut().zip(problem.outputs()) {
+    let mut found = Vec::new();
+    for (c, (one, &output)) in problem.characteristics().iter().zip(problem.outputs()).enumerate() {
         let own: Vec<&RecordedFailure> = recorded.iter().filter(|failure| failure.output == output).collect();
         let Some(first) = own.first() else { continue };
-        one.missing.without_value += own.len();
-        warnings.push(Warning::RecordedFailures {
-            characteristic: one.characteristic.name().to_owned(),
+        let warning = Warning::RecordedFailures {
+            characteristic: one.name().to_owned(),
             failed: own.len(),
             point: described(problem, first),
-        });
+        };
+        found.push((c, RecordedFailures { failed: own.len(), warning }));
     }
-    warnings
+    found
 }
 
 /// Description of a point in words: the dimensions that are not at their nominal values.

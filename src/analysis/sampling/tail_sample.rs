@@ -1,5 +1,6 @@
 //! Yield of `auto` where check points refute the surface at a limit: importance samples of the model about the place.
 
+use crate::analysis::result::stage_figures::TailFigures;
 use crate::analysis::sampling::accuracy_target::beside_sigma;
 use crate::analysis::{CharacteristicAnalysis, SampledTail};
 use crate::evaluation::{Evaluator, Ledger};
@@ -35,20 +36,22 @@ pub(in crate::analysis) fn decide(
     outcome: &Outcome,
     options: &Options,
     refuted: &[RefutedTail],
-    characteristics: &mut [CharacteristicAnalysis],
-) {
+    characteristics: &[CharacteristicAnalysis],
+) -> Vec<(usize, TailFigures)> {
     let spent = outcome.evaluated.ledger.evaluations();
     let most = most_tail_points(evaluator.problem(), options, spent).min(evaluator.remaining().unwrap_or(usize::MAX));
     if most == 0 || evaluator.run().stopped() {
-        return;
+        return Vec::new();
     }
     let is_open = |tail: &&RefutedTail| is_open(&characteristics[tail.characteristic], options);
     let open: Vec<RefutedTail> = refuted.iter().filter(is_open).cloned().collect();
-    let Some(found) = sample_refuted(evaluator, outcome, &open, most as u64) else { return };
-    for (c, one) in &found.characteristics {
-        take(&mut characteristics[*c], one, found.points);
-    }
+    let Some(found) = sample_refuted(evaluator, outcome, &open, most as u64) else {
+        return Vec::new();
+    };
+    let each = found.characteristics.iter();
+    let figures = each.filter_map(|(c, one)| Some((*c, taken(&characteristics[*c], one, found.points)?))).collect();
     evaluator.merge(Ledger { run: RunSummary { stopped: None, ..found.ledger.run }, ..found.ledger });
+    figures
 }
 
 /// True if the check points leave a yield open: its target is not decided, and its wanted accuracy is not reached.
@@ -62,9 +65,9 @@ fn is_open(one: &CharacteristicAnalysis, options: &Options) -> bool {
     !sampled && !decided && wanted.is_none_or(|(_, error, wanted)| error > wanted)
 }
 
-/// Takes the shares of a sample. A side without a reject has that of the surface, as far as its interval allows.
-fn take(one: &mut CharacteristicAnalysis, found: &RareCharacteristic, points: u64) {
-    let Some(interval) = found.yield_interval else { return };
+/// Shares of a sample. A side without a reject has that of the surface, as far as its interval allows. Returns None without an interval.
+fn taken(one: &CharacteristicAnalysis, found: &RareCharacteristic, points: u64) -> Option<TailFigures> {
+    let interval = found.yield_interval?;
     let law = one.distribution.capability;
     let of_law = [law.and_then(|of| of.below), law.and_then(|of| of.above)];
     let share = |beyond: &Option<Beyond>, of_law: Option<f64>| {
@@ -75,13 +78,7 @@ fn take(one: &mut CharacteristicAnalysis, found: &RareCharacteristic, points: u6
     let beyond = [share(&found.below, of_law[0]), share(&found.above, of_law[1])];
     let intervals = [&found.below, &found.above].map(|beyond| beyond.as_ref().map(|beyond| beyond.interval));
     let yield_ = (1.0 - beyond.iter().flatten().sum::<f64>()).clamp(0.0, 1.0);
-    let without: f64 = [&found.below, &found.above].into_iter().flatten().map(|of| of.bounds[1] - of.bounds[0]).sum();
-    one.missing.without_value += found.failed as usize;
-    if let Some(verification) = &mut one.evidence.verification
-        && found.failed > 0
-    {
-        // Points in the tail weigh the assemblies without a value.
-        verification.lost_share = verification.lost_share.map(|lost| lost.max(without));
-    }
-    one.evidence.tail_sampled = Some(SampledTail { points, failed: found.failed, yield_, interval, beyond, intervals });
+    let lost = [&found.below, &found.above].into_iter().flatten().map(|of| of.bounds[1] - of.bounds[0]).sum();
+    let sampled = SampledTail { points, failed: found.failed, yield_, interval, beyond, intervals };
+    Some(TailFigures { sampled, lost })
 }

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use crate::analysis::CharacteristicAnalysis;
+use crate::analysis::result::stage_figures::{MomentFigures, VerificationFigures};
 use crate::analysis::result::verification::{TRUSTED, UNTRUSTED, VarianceShare, Verification, VerificationKind};
 use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::sampling::accuracy_target::{MORE, PART};
@@ -16,7 +17,6 @@ use crate::evaluation::{Evaluator, Ledger};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Outcome, interpolated};
 use crate::plan::{AtNode, Point};
 use crate::problem::Problem;
-use crate::rare::RefutedTail;
 use crate::summary::RunSummary;
 use crate::verification::{
     BESIDE, Checked, CheckedFigures, PlanNode, SampleQuantile, SampledFigures, Target, Verified, check_points,
@@ -24,7 +24,7 @@ use crate::verification::{
     verify_characteristic,
 };
 use crate::warning::Warning;
-use sensitol_numeric::capability::{Capability, Law};
+use sensitol_numeric::capability::Law;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::surrogate::Surrogate;
@@ -47,15 +47,15 @@ const ORDINARY: f64 = 0.01;
 /// Largest error of a difference, in roundings of the value at the means.
 const ROUNDINGS: f64 = 8.0;
 
-/// Verifies every characteristic, unless that is switched off (see [`Options::verifies`]). Points of a costly model enter the ledger, those
-/// of a cheap one use up `left`. Returns the tails in which check points refute a surface.
+/// Verifications of the characteristics, by their places. Empty if that is switched off (see [`Options::verifies`]). Points of a costly model
+/// enter the ledger, those of a cheap one use up `left`.
 pub(in crate::analysis) fn verify(
     evaluator: &Evaluator<'_>,
     outcome: &Outcome,
     options: &Options,
     (kinked, left): (&[usize], &mut SampleBudget),
-    characteristics: &mut [CharacteristicAnalysis],
-) -> Vec<RefutedTail> {
+    characteristics: &[CharacteristicAnalysis],
+) -> Vec<(usize, VerificationFigures)> {
     let (problem, run, seed) = (evaluator.problem(), evaluator.run(), evaluator.seed());
     let costly = problem.function().signature().costly;
     if !options.verifies(problem.function().signature())
@@ -66,37 +66,42 @@ pub(in crate::analysis) fn verify(
     }
     // Points of the model have replaced a surface with a kink at the nominal point. Their errors need no surface.
     let replaced = |c: usize, one: &CharacteristicAnalysis| kinked.contains(&c) && one.evidence.model_sampled.is_some();
-    let open: Vec<usize> = (0..characteristics.len())
-        .filter(|&c| !replaced(c, &characteristics[c]) && !proven(outcome, c, &mut characteristics[c]))
-        .collect();
+    let (mut found, mut open) = (Vec::new(), Vec::new());
+    for (c, one) in characteristics.iter().enumerate().filter(|&(c, one)| !replaced(c, one)) {
+        match proven(outcome, c, one) {
+            Some(proven) => found.push((c, proven)),
+            None => open.push(c),
+        }
+    }
     if open.is_empty() {
-        return Vec::new();
+        return found;
     }
     // A budget that is too small for a sample of each characteristic may suffice for check points.
     let each = left.each(open.len());
     let cores: Option<Vec<usize>> = open.iter().map(|&c| core_within(problem, c, each)).collect();
     let Some(cores) = cores.filter(|_| !costly) else {
-        return check(evaluator, outcome, options.verify, &open, characteristics);
+        found.extend(check(evaluator, outcome, options.verify, &open, characteristics));
+        return found;
     };
     // A long formula takes a while for each of some 45 000 points. Characteristics that are not reached in time have no verification, and
     // the report states it.
-    let one = |(c, one): (usize, &mut CharacteristicAnalysis)| {
-        let core = open.binary_search(&c).map(|place| cores[place]);
-        core.map_or(Some(0), |core| sample(problem, outcome, (options, each), (c, core), one, (seed, run)))
+    let of = |(&c, &core): (&usize, &usize)| {
+        sample(problem, outcome, (options, each), (c, core), &characteristics[c], (seed, run))
     };
-    let spent: Vec<Option<usize>> = characteristics.par_iter_mut().enumerate().map(one).collect();
-    left.spend(spent.iter().flatten().sum());
-    let stopped = spent.contains(&None).then(|| run.why_open());
+    let sampled: Vec<Option<(usize, Option<VerificationFigures>)>> = open.par_iter().zip(&cores).map(of).collect();
+    left.spend(sampled.iter().flatten().map(|(spent, _)| spent).sum());
+    let stopped = sampled.iter().any(Option::is_none).then(|| run.why_open());
     evaluator.merge(Ledger::stopped_by(stopped));
-    Vec::new()
+    found.extend(open.into_iter().zip(sampled).filter_map(|(c, sampled)| Some((c, sampled?.1?))));
+    found
 }
 
-/// True if the surface is proven to equal the function. Its errors are roundings then.
-fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool {
-    let (Some(proof), Some(moments)) = (outcome.fitted[c].proof, one.moments) else { return false };
+/// Verification by a proof that the surface equals the function. Its errors are roundings then. Returns None without a proof.
+fn proven(outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Option<VerificationFigures> {
+    let (proof, moments) = (outcome.fitted[c].proof?, one.moments?);
     let sampled = one.evidence.sampled.is_some() || one.evidence.model_sampled.is_some();
     if sampled || one.missing.without_value > 0 {
-        return false;
+        return None;
     }
     let sigma = moments.sigma();
     let [of_mean, of_sigma] = [proof.mean, proof.sigma + f64::EPSILON * sigma].map(|rounding| ROUNDINGS * rounding);
@@ -111,8 +116,7 @@ fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool
         sources: vec![ErrorSource::Proven { degree: proof.degree }],
     };
     let yield_ = of_yield(&estimate, &moments, one.characteristic.limits());
-    one.error_estimate = Some(ErrorEstimate { yield_, ..estimate });
-    one.evidence.verification = Some(Verification {
+    let verification = Verification {
         kind: VerificationKind::Exact { degree: proof.degree },
         points: 0,
         failed: 0,
@@ -132,20 +136,22 @@ fn proven(outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool
         replaced: false,
         quantiles: [None; 7],
         sample: None,
-    });
-    true
+    };
+    let error_estimate = ErrorEstimate { yield_, ..estimate };
+    Some(VerificationFigures { moments: None, error_estimate, verification, without_value: 0, refuted: None })
 }
 
 /// Verifies one characteristic by a sample with `core` points in its core, within the evaluations that are left for it. Returns the
-/// evaluations that it took, or None if the run was stopped before there was a sample.
+/// evaluations that it took and the verification, which is None without moments. Returns None if the run was stopped before there was a
+/// sample.
 fn sample(
     problem: &Problem,
     outcome: &Outcome,
     (options, left): (&Options, Option<usize>),
     (c, mut core): (usize, usize),
-    one: &mut CharacteristicAnalysis,
+    one: &CharacteristicAnalysis,
     (seed, run): (u64, &Run<'_>),
-) -> Option<usize> {
+) -> Option<(usize, Option<VerificationFigures>)> {
     let surrogate = outcome.fitted[c].surrogate.as_ref();
     let beside = surrogate.map(|surrogate| (outcome.plan.varying(), surrogate));
     let mut found = verify_characteristic(problem, c, (seed, core), beside, run)?;
@@ -177,22 +183,24 @@ fn sample(
     spent += shares.as_ref().map_or(0, |_| most_points_of_shares(outcome.plan.varying().len()) - BESIDE);
     // With `model_figures`, a surface that is not trusted gives way to the model's figures.
     let refuted = options.model_figures && open.is_none_or(|share| share > TRUSTED);
-    let replaced = (options.method == Method::Auto || refuted) && replace(one, &found);
-    let Some(moments) = one.moments else { return Some(spent) };
+    let replacing = options.method == Method::Auto || refuted;
+    let replacement = if replacing { model_moments(one, &found) } else { None };
+    let Some(moments) = replacement.as_ref().map(|of| of.moments).or(one.moments) else { return Some((spent, None)) };
     let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));
-    let law = one.distribution.capability.and_then(|capability| capability.yield_());
+    let capability = replacement.as_ref().map_or(one.distribution.capability, |of| of.capability);
+    let law = capability.and_then(|capability| capability.yield_());
     let limits = one.characteristic.limits();
     let sides = [limits.lower().is_some(), limits.upper().is_some()];
-    one.error_estimate = Some(ErrorEstimate {
+    let error_estimate = ErrorEstimate {
         mean: error(found.mean, Some(moments.mean())),
         sigma: error(found.sigma, Some(moments.sigma())),
         skewness: error(found.skewness, moments.skewness()),
         kurtosis: error(found.kurtosis, moments.kurtosis()),
         yield_: error(found.yield_, law),
         sources: vec![ErrorSource::Sampled { points: found.points as u64 }],
-    });
+    };
     let quantiles = reported_quantiles(&found);
-    one.evidence.verification = Some(Verification {
+    let verification = Verification {
         kind: VerificationKind::Sample,
         points: found.points,
         failed: 0,
@@ -211,11 +219,20 @@ fn sample(
         unseen: None,
         shares,
         tails: found.sample.as_ref().filter(|_| limits.exist()).map(|sample| sample.tails(sides)),
-        replaced,
+        replaced: replacement.is_some(),
         quantiles,
         sample: found.sample.filter(|_| is_kept(one, options, open)).map(Arc::new),
-    });
-    Some(spent)
+    };
+    Some((
+        spent,
+        Some(VerificationFigures {
+            moments: replacement,
+            error_estimate,
+            verification,
+            without_value: 0,
+            refuted: None,
+        }),
+    ))
 }
 
 /// Quantiles of a sample at the probabilities of reports. None if nothing varies: a single value is no sample of a distribution.
@@ -241,11 +258,10 @@ fn named_shares(problem: &Problem, c: usize, seed: u64, run: &Run<'_>) -> Option
     variance_shares_during(problem, c, seed, run).map(|shares| shares.into_iter().map(share).collect())
 }
 
-/// Replaces figures that the model contradicts by the model's. Returns true if any was replaced.
-fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
-    let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return false };
+/// Moments with the model's figures in place of those that it contradicts. Returns None if it contradicts none.
+fn model_moments(one: &CharacteristicAnalysis, found: &SampledFigures) -> Option<MomentFigures> {
+    let (mean, sigma, moments) = (found.mean?, found.sigma?, one.moments?);
     let sampled = |of: Verified| Some(of.value);
-    let Some(moments) = one.moments else { return false };
     let apart = |of: Option<Verified>, value: Option<f64>| {
         of.zip(value).is_some_and(|(of, value)| (value - of.value).abs() > AGREES * of.error)
     };
@@ -256,7 +272,7 @@ fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
         apart(found.kurtosis, moments.kurtosis()),
     ];
     if !off.contains(&true) {
-        return false;
+        return None;
     }
     let own = [Some(moments.mean()), Some(moments.sigma()), moments.skewness(), moments.kurtosis()];
     let other = [sampled(mean), sampled(sigma), found.skewness.and_then(sampled), found.kurtosis.and_then(sampled)];
@@ -266,27 +282,18 @@ fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
     };
     // Moments of two origins need not belong to any distribution. All are the sample's in that case.
     let mixed = pick(&|i| off[i]).filter(|mixed| Law::fit(mixed).is_ok());
-    let Some(moments) = mixed.or_else(|| pick(&|_| true)) else { return false };
-    let limits = one.characteristic.limits();
-    let capability = |law: &Law| Capability::of(law, moments.mean(), moments.sigma(), limits);
-    let law = Law::fit(&moments);
-    one.distribution.capability = law.as_ref().ok().map(capability);
-    one.evidence.normal = Law::normal(&moments).ok().map(|law| capability(&law));
-    one.evidence.law = Some(law);
-    one.moments = Some(moments);
-    one.evidence.sampled = None;
-    true
+    let moments = mixed.or_else(|| pick(&|_| true))?;
+    Some(MomentFigures::of(moments, one.characteristic.limits()))
 }
 
-/// Verifies the `open` characteristics of a costly model at check points, `asked` if they were asked for by number. Returns the tails in
-/// which they refute a surface.
+/// Verifications of the `open` characteristics of a costly model at check points, `asked` if they were asked for by number.
 fn check(
     evaluator: &Evaluator<'_>,
     outcome: &Outcome,
     asked: Option<usize>,
     open: &[usize],
-    characteristics: &mut [CharacteristicAnalysis],
-) -> Vec<RefutedTail> {
+    characteristics: &[CharacteristicAnalysis],
+) -> Vec<(usize, VerificationFigures)> {
     let varying = outcome.plan.varying();
     let integrated: Vec<Option<Surrogate>> = (0..characteristics.len()).map(|c| interpolated(outcome, c)).collect();
     let surface = |c: usize| outcome.fitted[c].surrogate.as_ref().or(integrated[c].as_ref());
@@ -307,20 +314,17 @@ fn check(
     };
     let part = evaluator.part().with_budget(budget);
     let Some(checked) = verify_by_checks(&part, varying, &targets, most) else { return Vec::new() };
-    let mut refuted = Vec::new();
-    for &c in open {
-        // Points without an answer give no information.
-        if !checked.unanswered[c] {
-            let exact = surface(c).and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));
-            judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
-            let points = checked.characteristics[c].refuted.clone();
-            refuted.extend(points.map(|points| RefutedTail { characteristic: c, points }));
-        }
-    }
+    // Points without an answer give no information.
+    let answered = open.iter().copied().filter(|&c| !checked.unanswered[c]);
+    let found = answered.filter_map(|c| {
+        let exact = surface(c).and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));
+        Some((c, of_checks(&characteristics[c], &checked, &checked.characteristics[c], exact)?))
+    });
+    let found = found.collect();
     let ledger = part.into_ledger();
     // Open check points leave the figures of the method complete.
     evaluator.merge(Ledger { run: RunSummary { stopped: None, ..ledger.run }, ..ledger });
-    refuted
+    found
 }
 
 /// Points of the plan without a value of a characteristic, and those of a single input. None if all have a value.
@@ -343,9 +347,14 @@ fn plan_nodes(outcome: &Outcome, c: usize) -> Vec<PlanNode> {
     failed.into_iter().chain(single.filter_map(|point| node(point, true))).collect()
 }
 
-/// Derives the errors of a method's figures: the error of the surface, and the difference between method and surface.
-fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFigures, surface: Option<Moments>) {
-    let Some(moments) = one.moments else { return };
+/// Errors of a method's figures: the error of the surface, and the difference between method and surface. Returns None without moments.
+fn of_checks(
+    one: &CharacteristicAnalysis,
+    checked: &Checked,
+    found: &CheckedFigures,
+    surface: Option<Moments>,
+) -> Option<VerificationFigures> {
+    let moments = one.moments?;
     let errors = found.errors;
     let error =
         |index: usize, own: Option<f64>, surface: Option<f64>| Some(libm::hypot(own? - surface?, errors?[index]));
@@ -353,16 +362,15 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
     let (mean, sigma) = (of(|m| Some(m.mean())), of(|m| Some(m.sigma())));
     let (skewness, kurtosis) = (of(Moments::skewness), of(Moments::kurtosis));
     let law = one.distribution.capability.and_then(|capability| capability.yield_());
-    one.error_estimate = Some(ErrorEstimate {
+    let error_estimate = ErrorEstimate {
         mean: error(0, mean.0, mean.1),
         sigma: error(1, sigma.0, sigma.1),
         skewness: error(2, skewness.0, skewness.1),
         kurtosis: error(3, kurtosis.0, kurtosis.1),
         yield_: found.yield_.zip(law).map(|(share, law)| share.error_of(law)),
         sources: vec![ErrorSource::Checked { points: checked.count }],
-    });
-    one.missing.without_value += found.failed;
-    one.evidence.verification = Some(Verification {
+    };
+    let verification = Verification {
         kind: VerificationKind::Checks,
         points: checked.count,
         failed: found.failed,
@@ -382,7 +390,9 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         replaced: false,
         quantiles: [None; 7],
         sample: None,
-    });
+    };
+    let refuted = found.refuted.clone();
+    Some(VerificationFigures { moments: None, error_estimate, verification, without_value: found.failed, refuted })
 }
 
 /// Warnings that follow from the verification of one characteristic.
