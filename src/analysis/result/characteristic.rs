@@ -4,7 +4,6 @@ use serde::Serialize;
 
 use crate::analysis::result::contribution_figures::ContributionFigures;
 use crate::analysis::result::distribution_figures::DistributionFigures;
-use crate::analysis::result::distribution_free_yield::DistributionFreeYield;
 use crate::analysis::result::evidence::Evidence;
 use crate::analysis::result::interaction_listing::{dimensions_of, mixed_of, pairs_of, share_of};
 use crate::analysis::result::linear::Linear;
