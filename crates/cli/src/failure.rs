@@ -148,6 +148,10 @@ pub(super) enum Failure {
     WrongPage { path: PathBuf, reason: String },
     #[error("--compare is about two revisions of a study, the older one first: name two files, not {count}")]
     NotTwo { count: usize },
+    #[error("--pdf prints the page by Chromium, and {}: install Chromium, name it in the variable SENSITOL_CHROMIUM, or write the page by --html and print it from a browser", named.as_ref().map_or("there is none on PATH".to_owned(), |path| format!("there is no file {}, which SENSITOL_CHROMIUM names", path.display())))]
+    NoBrowser { named: Option<PathBuf> },
+    #[error("{browser} did not print the page: {reason}; write the page by --html and print it from a browser", browser = browser.display())]
+    NotPrinted { browser: PathBuf, reason: String },
     #[error("the page of the workbench is older than this program: run web/build again")]
     OldPage,
     #[error("{path} is no folder of studies: {reason}", path = path.display())]

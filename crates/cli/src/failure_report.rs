@@ -122,6 +122,8 @@ impl Failure {
             Self::NoExamples => "no-examples",
             Self::Unwritable { .. } | Self::Stdout(_) => "unwritable",
             Self::NoPage { .. } => "no-page",
+            Self::NoBrowser { .. } => "no-browser",
+            Self::NotPrinted { .. } => "not-printed",
             Self::WrongPage { .. } | Self::OldPage => "wrong-page",
             Self::NotInPage { .. } => "not-in-page",
             Self::NotAFolder { .. } => "not-a-folder",

@@ -4,6 +4,8 @@
 
 mod advice;
 mod args;
+mod calendar_date;
+mod chromium;
 mod command_groups;
 mod commands;
 mod csv;
@@ -14,6 +16,7 @@ mod interrupt;
 mod new_study;
 mod output;
 mod own_file;
+mod page_files;
 mod pairs;
 mod points;
 mod progress;

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{Read, Seek};
 use std::path::Path;
 
+use crate::chromium::MARK;
 use sensitol::allocation::Status;
 use sensitol::method::Method;
 use sensitol_models::ALL;
@@ -84,6 +85,7 @@ pub(super) fn is_free(path: &Path, content: &Content<'_>) -> std::io::Result<boo
     Ok(match content {
         Content::Study => false,
         Content::Points { header } => first_line(&head) == header.trim_end().as_bytes(),
+        Content::Report if head.starts_with(b"%PDF") => is_own_print(file),
         Content::Report if head.starts_with(b"PK") => file.rewind().is_ok() && is_own_workbook(file),
         Content::Report => is_own_text(&String::from_utf8_lossy(&head)),
     })
@@ -91,6 +93,13 @@ pub(super) fn is_free(path: &Path, content: &Content<'_>) -> std::io::Result<boo
 
 fn first_line(head: &[u8]) -> &[u8] {
     head.split(|&byte| byte == b'\n').next().unwrap_or_default().trim_ascii_end()
+}
+
+/// True for a print that nobody changed after this program.
+fn is_own_print(mut file: File) -> bool {
+    let mut end = Vec::new();
+    let from_end = std::io::SeekFrom::End(-(MARK.len() as i64));
+    file.seek(from_end).and_then(|_| file.read_to_end(&mut end)).is_ok() && end == MARK
 }
 
 /// True for a workbook that nobody saved after this program.

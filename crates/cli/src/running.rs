@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::{Arc, Once};
 use std::time::{Duration, Instant};
 
+use crate::calendar_date::today;
 use crate::failure::{Exit, Failure};
 use crate::interrupt;
 use crate::output;
@@ -57,10 +58,16 @@ impl Clock {
             title: study.title.clone(),
             sha256: study.sha256.clone(),
             warnings: study.warnings.clone(),
-            block: study.about.clone(),
+            block: dated(study.about.clone()),
             scene: study.scene(),
         }
     }
+}
+
+/// Adds the date to the cells of a title block.
+fn dated(mut block: Vec<(&'static str, String)>) -> Vec<(&'static str, String)> {
+    block.extend(today().map(|date| ("Date", date)));
+    block
 }
 
 /// Returns the settings of external models: journal, listener, and given answers.

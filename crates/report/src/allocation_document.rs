@@ -30,6 +30,19 @@ const LABELS: usize = 6;
 /// Most dimensions named as the reason why a requirement cannot be kept.
 const NAMED: usize = 5;
 
+/// Bars of a quantity before and after a change.
+fn bars_of_change(caption: &str, rows: Vec<Bar>) -> Bars {
+    let legend = vec![(Fill::Before, "before"), (Fill::After, "after")];
+    Bars { caption: caption.to_owned(), rows, marks: Vec::new(), legend }
+}
+
+/// Row of a quantity before and after a change, on a scale up to `greatest`.
+fn changed(name: &str, amounts: [Option<f64>; 2], greatest: f64, text: String) -> Bar {
+    let width = |amount: Option<f64>| (1e4 * (amount.unwrap_or(0.0) / greatest).clamp(0.0, 1.0)).round() / 1e2;
+    let parts = [Fill::Before, Fill::After].into_iter().zip(amounts).map(|(fill, amount)| (fill, [0.0, width(amount)]));
+    Bar { name: name.to_owned(), parts: parts.collect(), text, remark: Line::default() }
+}
+
 impl AllocationReport {
     /// Builds the document: result and cost, tolerances (table `tolerances`), requirements (table `requirements`), characteristics, the
     /// front (table `front`), and the entries to paste into the study.
@@ -50,6 +63,9 @@ impl AllocationReport {
             let shown = tables.iter().any(|table| !table.view.is_empty());
             let mut section = Section::default();
             tables.into_iter().for_each(|table| section.table(table));
+            if group == 0 && shown {
+                section.aside("", vec![Element::Chart(Chart::Bars(self.tolerance_bars()))]);
+            }
             if group == 0 && shown && self.paid() > 0.0 {
                 section.aside("Costs", vec![Element::Chart(Chart::Bars(self.costs()))]);
             }
@@ -173,24 +189,26 @@ impl AllocationReport {
     /// Builds bars of the cost of every dimension before and after.
     fn costs(&self) -> Bars {
         let highest = self.paid();
-        let part = |fill: Fill, cost: Option<f64>| {
-            let width = (1e4 * (cost.unwrap_or(0.0) / highest).clamp(0.0, 1.0)).round() / 1e2;
-            (fill, [0.0, width])
-        };
         let row = |one: &AllocatedReport| {
             let Allocated { cost_before, cost_after, .. } = one.of.of;
-            let mut parts = vec![part(Fill::Before, cost_before), part(Fill::Linear, cost_after)];
-            // The longer bar is drawn first, so that both stay visible.
-            parts.sort_by(|a, b| b.1[1].total_cmp(&a.1[1]));
-            let text = format!("{} / {}", known(cost_before, money), known(cost_after, money));
-            Bar { name: one.of.dimension.clone(), parts, text, remark: Line::default() }
+            let text = format!("{} → {}", known(cost_before, money), known(cost_after, money));
+            changed(&one.of.dimension, [cost_before, cost_after], highest, text)
         };
-        Bars {
-            caption: "Cost of every dimension, before and after".to_owned(),
-            rows: self.tolerances.iter().map(row).collect(),
-            marks: Vec::new(),
-            legend: vec![(Fill::Before, "before"), (Fill::Linear, "after")],
-        }
+        bars_of_change("Cost of every dimension, before and after", self.tolerances.iter().map(row).collect())
+    }
+
+    /// Builds bars of the tolerance of every dimension before and after. Dimensions with the same unit have one scale.
+    fn tolerance_bars(&self) -> Bars {
+        let row = |one: &AllocatedReport| {
+            let alike = self.tolerances.iter().filter(|other| other.of.unit == one.of.unit);
+            let greatest = alike.flat_map(|other| [other.of.of.before, other.of.of.after]).fold(0.0, f64::max);
+            let Allocated { before, after, .. } = one.of.of;
+            let unit = one.of.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
+            let deviations = &one.deviations;
+            let text = format!("{} → {}{unit}", band(before, deviations.before), band(after, deviations.after));
+            changed(&one.of.dimension, [Some(before), Some(after)], greatest, text)
+        };
+        bars_of_change("Tolerance of every dimension, before and after", self.tolerances.iter().map(row).collect())
     }
 
     fn recentred(&self) -> DataTable {

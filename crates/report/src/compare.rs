@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::document::number::{beside, known, significant, yielded};
+use crate::document::number::{beside, known, plural, significant, yielded};
 use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Section,
     Stroke, Tone, Value,
@@ -134,7 +134,9 @@ impl CompareReport {
             let mut section = Section::default();
             for one in &self.not_run {
                 let time = one.projected_s.map_or(String::new(), |time| format!(", {} s", significant(time, 2)));
-                let cost = one.evaluations.map_or(String::new(), |count| format!(" ({count} evaluations{time})"));
+                let cost = one.evaluations.map_or(String::new(), |count| {
+                    format!(" ({}{time})", plural(count as usize, "evaluation", "evaluations"))
+                });
                 section.line(format!("not run: {}{cost}: {}", one.contender.name(), one.reason));
             }
             document.sections.push(section);

@@ -301,8 +301,9 @@ impl SimulationSection for SimulatedCharacteristic {
     fn picture(&self, section: &mut Vec<Element>) {
         let Some(of) = self.histogram.as_ref().filter(|of| of.counts.len() >= INTERVALS) else { return };
         let law = self.own_law();
-        let curve = law.as_ref().map_or(String::new(), |law| {
-            format!(" The line: the Pearson curve of its four moments ({}).", law.kind().name())
+        let law_name = law.as_ref().map_or(String::new(), |law| match law.kind().name() {
+            "normal" => "normal fit of the four moments".to_owned(),
+            kind => format!("Pearson fit of the four moments, type {kind}"),
         });
         section.gap();
         section.chart(Chart::Spread(Box::new(SpreadChart {
@@ -317,7 +318,8 @@ impl SimulationSection for SimulatedCharacteristic {
             places: self.mean().map(|mean| (mean, "mean", "mean")).into_iter().collect(),
             sigma: self.sigma().unwrap_or(0.0),
             label: format!("Histogram of {} with the standard error of every bar", self.name()),
-            words: format!("The sample; each bar with one standard error.{curve}"),
+            curve_name: String::new(),
+            law_name,
         })));
     }
 

@@ -256,7 +256,10 @@ impl Study {
         match std::str::from_utf8(&bytes) {
             Ok(text) => {
                 let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-                Self::parse(text, format, &name, Place::folder(folder), externals, parameter)
+                let mut study = Self::parse(text, format, &name, Place::folder(folder), externals, parameter)?;
+                let file = path.file_name().map(|file| ("Study", file.to_string_lossy().into_owned()));
+                study.about.extend(file);
+                Ok(study)
             }
             Err(error) => {
                 let offset = error.valid_up_to();

@@ -44,6 +44,10 @@ pub(crate) struct CompareLotArgs {
     #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub(crate) html: Option<PathBuf>,
 
+    /// Print that page to a PDF by an installed Chromium
+    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
+    pub(crate) pdf: Option<PathBuf>,
+
     /// Write parts, assemblies, differences and groups as CSV files into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(crate) csv: Option<PathBuf>,

@@ -240,9 +240,18 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "text", conflicts_with_all = ["json", "stack", "summary", "compare"], help_heading = OUTPUT)]
     pub(super) gum: Option<StackArg>,
 
+    /// Write the report as one HTML page; several studies: a folder of pages
+    ///
     /// Write the report as one HTML page, in which other tolerances can be tried; several studies: a folder of pages, STUDY.html
     #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub(super) html: Option<PathBuf>,
+
+    /// Print that page by an installed Chromium; several studies: a folder
+    ///
+    /// Print that page to a PDF by an installed Chromium: SENSITOL_CHROMIUM, or chromium, chromium-browser or google-chrome on PATH. The
+    /// paper is that of the locale, A4 or Letter; several studies: a folder, STUDY.pdf
+    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
+    pub(super) pdf: Option<PathBuf>,
 
     /// Write the tables of the report as CSV files into DIR, which is made where it is missing; several studies: into DIR/STUDY
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
@@ -298,6 +307,10 @@ pub(super) struct SweepArgs {
     /// Write the report as one HTML page
     #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub(super) html: Option<PathBuf>,
+
+    /// Print that page to a PDF by an installed Chromium
+    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
+    pub(super) pdf: Option<PathBuf>,
 
     /// Write the table as sweep.csv into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
@@ -365,6 +378,10 @@ pub(super) struct AllocateArgs {
     /// Write the report as one HTML page
     #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub(super) html: Option<PathBuf>,
+
+    /// Print that page to a PDF by an installed Chromium
+    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
+    pub(super) pdf: Option<PathBuf>,
 
     /// Write tolerances, requirements and front as CSV files into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]

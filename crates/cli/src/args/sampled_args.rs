@@ -77,7 +77,7 @@ pub(crate) struct SimulateArgs {
     pub(crate) method: Option<MethodArg>,
 
     /// Number of processes that share the points; `sensitol merge` joins their sums
-    #[arg(long, value_name = "K", value_parser = whole, allow_negative_numbers = true, requires = "shard", conflicts_with_all = ["rare", "sobol", "surrogate_control", "until", "until_yield", "check", "html", "csv"])]
+    #[arg(long, value_name = "K", value_parser = whole, allow_negative_numbers = true, requires = "shard", conflicts_with_all = ["rare", "sobol", "surrogate_control", "until", "until_yield", "check", "html", "pdf", "csv"])]
     pub(crate) shards: Option<u64>,
 
     /// This process, from 1 to --shards: its sums are written as JSON
@@ -98,6 +98,10 @@ pub(crate) struct SampleReportArgs {
     /// Write the report as one HTML page
     #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub(crate) html: Option<PathBuf>,
+
+    /// Print that page to a PDF by an installed Chromium
+    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
+    pub(crate) pdf: Option<PathBuf>,
 
     /// Write estimates and histogram as CSV files into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
@@ -136,6 +140,10 @@ pub(crate) struct CompareArgs {
     /// Write the report as one HTML page
     #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub(crate) html: Option<PathBuf>,
+
+    /// Print that page to a PDF by an installed Chromium
+    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
+    pub(crate) pdf: Option<PathBuf>,
 
     /// Write the table as comparison.csv into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]

@@ -7,6 +7,7 @@ use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::{Look, json};
 use crate::own_file::Content;
+use crate::page_files::PageFiles;
 use crate::progress::Bar;
 use crate::running::{Clock, confirmed, externals, kept, on_threads};
 use crate::{interrupt, study};
@@ -27,7 +28,7 @@ pub(crate) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let destination = files.output(&asked.output)?;
     let folder = files.folder(asked.csv.as_deref(), &TABLES.map(|name| format!("{name}.csv")))?;
     let chart = files.file(asked.svg.as_deref())?;
-    let page = files.file(asked.html.as_deref())?;
+    let page = PageFiles::open(&mut files, asked.html.as_deref(), asked.pdf.as_deref())?;
     asked.write.as_deref().map_or(Ok(()), |path| stays_beside(path, &asked.study.study, &study))?;
     let written = files.file_of(asked.write.as_deref(), &Content::Study)?;
     let clock = Clock::start(asked.work.time);
@@ -61,7 +62,7 @@ pub(crate) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let mut result = destination.write(&printed);
     result = result.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &TABLES))));
     result = result.and(chart.map_or(Ok(()), |chart| chart.write(&svg(&document, "Cost against what is required"))));
-    result = result.and(page.map_or(Ok(()), |page| page.write(&allocate_html(&report))));
+    result = result.and(page.write(|| allocate_html(&report)));
     match (written, anew) {
         (Some(file), Some(Ok(anew))) => result = result.and(file.write(&anew.text)),
         (Some(_), Some(Err(error))) => result = result.and(Err(Failure::Rewrite(error))),

@@ -10,6 +10,7 @@ use crate::files::Files;
 use crate::interrupt;
 use crate::output::{Destination, Look, json};
 use crate::own_file::Content;
+use crate::page_files::PageFiles;
 use crate::points;
 use crate::progress::Bar;
 use crate::running::{Clock, checked, confirmed, externals, kept, on_threads};
@@ -37,7 +38,8 @@ pub(crate) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, 
     let mut files = Files::of(path, &study, asked.work.journal.as_deref()).forced(asked.output.force);
     asked.points.iter().for_each(|points| files.reads(points, "read by --points"));
     let destination = files.output(&asked.output)?;
-    let mut beside = Beside::open(&mut files, &study, asked.csv.as_deref(), asked.html.as_deref())?;
+    let mut beside =
+        Beside::open(&mut files, &study, asked.csv.as_deref(), [asked.html.as_deref(), asked.pdf.as_deref()])?;
     beside.workbook = files.file(asked.xlsx.as_deref())?;
     let header = points::of_model(&study.problem, &[]);
     beside.missing = files.file_of(asked.write_missing.as_deref(), &Content::Points { header: &header })?;
@@ -68,7 +70,7 @@ pub(crate) fn read(
     let answers = asked.points.as_ref().map(|_| 0);
     study.options.verify = asked.verify.or(study.options.verify).or(answers);
     study.options.extremes |= asked.extremes;
-    study.options.densities |= asked.html.is_some();
+    study.options.densities |= asked.html.is_some() || asked.pdf.is_some();
     let joint = study.options.target_joint_yield.is_some();
     if asked.check && !joint && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
         return Err(Failure::NothingToCheck);
@@ -79,21 +81,22 @@ pub(crate) fn read(
 /// Files of a report besides the printed text.
 pub(crate) struct Beside {
     folder: Option<CsvFolder>,
-    page: Option<Destination>,
+    page: PageFiles,
     pub(crate) workbook: Option<Destination>,
     missing: Option<Destination>,
 }
 
 impl Beside {
-    /// Opens the CSV files in a folder and the page, before the analysis.
+    /// Opens the CSV files in a folder, the page and its print, before the analysis.
     pub(crate) fn open(
         files: &mut Files,
         study: &Study,
         csv: Option<&Path>,
-        html: Option<&Path>,
+        [html, pdf]: [Option<&Path>; 2],
     ) -> Result<Self, Failure> {
         let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
-        Ok(Self { folder: files.folder(csv, &names)?, page: files.file(html)?, workbook: None, missing: None })
+        let folder = files.folder(csv, &names)?;
+        Ok(Self { folder, page: PageFiles::open(files, html, pdf)?, workbook: None, missing: None })
     }
 }
 
@@ -147,18 +150,16 @@ pub(crate) fn analyzed(
     if is_conditional {
         report.warnings.push(WarningReport::of(&Warning::ConditionalVerdict { characteristics: conditional }));
     }
-    let report = match files.page {
-        // Only a page shows them.
-        Some(_) => report.with_deviations(study, &Run::to_the_end())?,
-        None => report,
-    };
+    // Only a page shows them.
+    let report = if files.page.is_asked() { report.with_deviations(study, &Run::to_the_end())? } else { report };
     let analysis = &report.analysis;
     let written = show(&report);
     let written = written.and(files.folder.map_or(Ok(()), |folder| folder.write(&csv_files(&report))));
-    let written = written.and(files.page.map_or(Ok(()), |page| {
+    let page = || {
         let what_if = WhatIf::of(&study.problem, analysis, &study.lines, &study.costs);
-        page.write(&analyze_html(&report, Some(&what_if)))
-    }));
+        analyze_html(&report, Some(&what_if))
+    };
+    let written = written.and(files.page.write(page));
     let written = written.and(files.workbook.map_or(Ok(()), |workbook| {
         let bytes = analyze_xlsx(&report).map_err(|error| Failure::Workbook { reason: error.to_string() })?;
         workbook.write_bytes(&bytes)

@@ -4,6 +4,7 @@ use crate::args::CompareArgs;
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::{Look, json};
+use crate::page_files::PageFiles;
 use crate::running::{Clock, confirmed, kept, on_threads};
 use crate::{interrupt, study};
 use sensitol::assembly::Run;
@@ -23,7 +24,7 @@ pub(crate) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let names = ["comparison.csv".to_owned()];
     let table = files.folder(asked.csv.as_deref(), &names)?;
     let chart = files.file(asked.svg.as_deref())?;
-    let page = files.file(asked.html.as_deref())?;
+    let page = PageFiles::open(&mut files, asked.html.as_deref(), asked.pdf.as_deref())?;
     let mut options = CompareOptions::default();
     options.budget = asked.budget.or(study.options.budget);
     options.reference = asked.samples;
@@ -41,7 +42,7 @@ pub(crate) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
         destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
     let written = written.and(table.map_or(Ok(()), |table| table.write(&csv_tables(&document, &["comparison"]))));
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&svg(&document, "Evaluations against error"))));
-    let written = written.and(page.map_or(Ok(()), |page| page.write(&compare_html(&report))));
+    let written = written.and(page.write(|| compare_html(&report)));
     let failed = comparison.reference.characteristics.iter().filter(|one| one.failed > 0);
     let failed = failed.map(|one| Warning::FailedSamples {
         characteristic: one.characteristic.name().to_owned(),

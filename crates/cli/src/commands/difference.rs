@@ -8,6 +8,7 @@ use crate::csv::CsvFolder;
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::{Look, json};
+use crate::page_files::PageFiles;
 use sensitol_report::csv::csv_tables;
 use sensitol_report::document::terminal::text;
 use sensitol_report::{DifferenceReport, Report, ToDocument};
@@ -26,13 +27,13 @@ pub(crate) fn run([old, new]: [&Path; 2], asked: &AnalyzeArgs, look: Look) -> Re
         studies.push(study);
     }
     let destination = files.output(&asked.output)?;
-    let page = files.file(asked.html.as_deref())?;
+    let page = PageFiles::open(&mut files, asked.html.as_deref(), asked.pdf.as_deref())?;
     let tables: Vec<String> = TABLES.iter().map(|name| format!("{name}.csv")).collect();
     let folder: Option<CsvFolder> = files.folder(asked.csv.as_deref(), &tables)?;
     let (mut reports, mut exit): (Vec<Report>, _) = (Vec::new(), Exit::Done);
     for (study, name) in studies.iter().zip(&names) {
         // Only the difference has files. The two reports have none.
-        let nothing = Beside::open(&mut files, study, None, None)?;
+        let nothing = Beside::open(&mut files, study, None, [None, None])?;
         let ended = analyzed(study, asked, nothing, None, look.of(name), |report| {
             reports.push(report.clone());
             Ok(())
@@ -51,6 +52,6 @@ pub(crate) fn run([old, new]: [&Path; 2], asked: &AnalyzeArgs, look: Look) -> Re
         false => text(&document, look.style(&asked.output)),
     })?;
     folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &TABLES)))?;
-    page.map_or(Ok(()), |page| page.write(&difference.html()))?;
+    page.write(|| difference.html())?;
     Ok(exit)
 }

@@ -194,7 +194,12 @@ impl PlanReport {
         document.line(format!("{}: {}", self.method, self.about));
         let (evaluations, varying) = (self.evaluations, self.varying);
         match &self.fitted_over {
-            None => document.line(format!("{evaluations} evaluations for {varying} varying dimensions ({})", self.count)),
+            None => document.line(format!(
+                "{} for {} ({})",
+                plural(evaluations, "evaluation", "evaluations"),
+                plural(varying, "varying dimension", "varying dimensions"),
+                self.count
+            )),
             Some(FittedOver { inputs, dimensions }) => document.line(format!(
                 "{evaluations} evaluations over {} of the program, which {dimensions} dimensions drive ({}, N the inputs)",
                 plural(*inputs, "input", "inputs"),
@@ -212,7 +217,7 @@ impl PlanReport {
         document.line(rounds(self));
         for (index, stage) in self.stages.iter().enumerate() {
             let chosen = if stage.known_beforehand { "" } else { ", chosen by the answers so far" };
-            document.line(format!("stage {}: {} points{chosen}", index + 1, stage.evaluations));
+            document.line(format!("stage {}: {}{chosen}", index + 1, plural(stage.evaluations, "point", "points")));
             for purpose in &stage.purposes {
                 document.note(format!("{:>6}  {}", purpose.points, purpose.purpose));
             }

@@ -5,6 +5,7 @@ use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::interrupt;
 use crate::output::{Look, json};
+use crate::page_files::PageFiles;
 use crate::running::{Clock, checked, confirmed, kept};
 use crate::sampling::{sampling, surrogate};
 use sensitol::method::Options;
@@ -24,7 +25,7 @@ pub(crate) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     let destination = files.output(&asked.report.output)?;
     let names = ["rare.csv".to_owned()];
     let folder = files.folder(asked.report.csv.as_deref(), &names)?;
-    let page = files.file(asked.report.html.as_deref())?;
+    let page = PageFiles::open(&mut files, asked.report.html.as_deref(), asked.report.pdf.as_deref())?;
     let costly = study.problem.function().signature().costly;
     let mut options = RareOptions::default();
     options.samples = asked.samples.unwrap_or(SAMPLES[usize::from(costly)]);
@@ -45,7 +46,7 @@ pub(crate) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
         text(&document, look.style(&asked.report.output))
     });
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &["rare"]))));
-    let written = written.and(page.map_or(Ok(()), |page| page.write(&rare_html(&report))));
+    let written = written.and(page.write(|| rare_html(&report)));
     look.tell_all(&report.warnings);
     clock.stopped(&found.run, (found.samples, None), Counted::Points, look);
     if interrupt::stopped() {

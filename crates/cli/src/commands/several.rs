@@ -71,7 +71,7 @@ pub(crate) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
     if asked.points.is_some() {
         return Err(Failure::PointsOfOne { count: all.len() });
     }
-    let stems = match asked.csv.is_some() || asked.html.is_some() || asked.xlsx.is_some() {
+    let stems = match [&asked.csv, &asked.html, &asked.pdf, &asked.xlsx].into_iter().any(Option::is_some) {
         true => {
             let of_paths = stems(paths)?;
             let of = |one: &Asked<'_>| {
@@ -174,6 +174,8 @@ fn open(
 ) -> Result<Vec<Ready>, Failure> {
     let pages = |path: &Path| folder_of(path, "--html", ["the name of one page", "pages"], &["html", "htm"]);
     asked.html.as_deref().map(pages).transpose()?;
+    let prints = |path: &Path| folder_of(path, "--pdf", ["the name of one print", "prints"], &["pdf"]);
+    asked.pdf.as_deref().map(prints).transpose()?;
     let books = |path: &Path| folder_of(path, "--xlsx", ["the name of one workbook", "workbooks"], &["xlsx"]);
     asked.xlsx.as_deref().map(books).transpose()?;
     asked.csv.as_deref().map(CsvFolder::make).transpose()?;
@@ -184,7 +186,8 @@ fn open(
         };
         let tables = asked.csv.as_deref().map(|folder| folder.join(stem));
         let page = asked.html.as_deref().map(|folder| folder.join(format!("{stem}.html")));
-        let mut beside = Beside::open(files, &study, tables.as_deref(), page.as_deref())?;
+        let print = asked.pdf.as_deref().map(|folder| folder.join(format!("{stem}.pdf")));
+        let mut beside = Beside::open(files, &study, tables.as_deref(), [page.as_deref(), print.as_deref()])?;
         let workbook = asked.xlsx.as_deref().map(|folder| folder.join(format!("{stem}.xlsx")));
         beside.workbook = files.file(workbook.as_deref())?;
         Ok(Ok((study, beside)))

@@ -4,6 +4,7 @@ use crate::args::SweepArgs;
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::{Look, json};
+use crate::page_files::PageFiles;
 use crate::progress::Bar;
 use crate::running::{Clock, confirmed, externals, kept, on_threads};
 use crate::{interrupt, study};
@@ -25,7 +26,7 @@ pub(crate) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let names = ["sweep.csv".to_owned()];
     let table = files.folder(asked.csv.as_deref(), &names)?;
     let chart = files.file(asked.svg.as_deref())?;
-    let page = files.file(asked.html.as_deref())?;
+    let page = PageFiles::open(&mut files, asked.html.as_deref(), asked.pdf.as_deref())?;
     let clock = Clock::start(asked.work.time);
     let sweep = swept(&study, asked, &clock, look)?;
     let report = SweepReport::of(&study.problem, &sweep, clock.about(&study));
@@ -34,7 +35,7 @@ pub(crate) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
         destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
     let written = written.and(table.map_or(Ok(()), |table| table.write(&csv_tables(&document, &["sweep"]))));
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&svg(&document, "Mean and quantile band"))));
-    let written = written.and(page.map_or(Ok(()), |page| page.write(&sweep_html(&report))));
+    let written = written.and(page.write(|| sweep_html(&report)));
     look.tell_all(&report.warnings);
     let done = sweep.analyses.iter().flatten().count();
     clock.stopped(&sweep.run, (done as u64, Some(sweep.values.len() as u64)), Counted::Values, look);

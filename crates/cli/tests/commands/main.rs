@@ -24,6 +24,8 @@ mod lots;
 mod memory;
 mod outputs;
 mod own_files;
+#[cfg(unix)]
+mod prints;
 mod probabilities;
 mod probe;
 mod rare;

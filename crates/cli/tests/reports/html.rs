@@ -240,10 +240,10 @@ fn the_command_line_writes_pages() {
         let of_folder = run(&[call, &["--html", folder.path().to_str().unwrap()]].concat());
         assert!(of_folder.starts_with("exit 2") && of_folder.contains("cannot be written"), "{of_folder}");
     }
-    // Every dimension with a cost has a bar of the old cost and one of the new cost.
+    // Every dimension has bars of its tolerance and of its cost, before and after.
     let page = std::fs::read_to_string(path("allocate.html")).unwrap();
     let bars = |class: &str| page.matches(&format!("<rect class=\"{class}\"")).count();
-    assert!(bars("was") > 0 && bars("was") == bars("linear"), "{page}");
+    assert!(bars("was") == 8 && bars("was") == bars("after"), "{page}");
     let page = std::fs::read_to_string(path("simulate.html")).unwrap();
     assert!(page.contains("importance sampling") && page.contains("most likely above"), "{page}");
 }
@@ -516,20 +516,78 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
     for (label, drawn) in [
         // Once more in the panel of its tail.
         (">lower 3.8<", 3),
-        // Once more in the facts.
-        (">28890 ppm<", 3),
+        (">28890 ppm<", 2),
         (">mean \u{b1} 3\u{3c3}<", 4),
         (">RSS</text>", 4),
         (">worst case, linear</text>", 4),
     ] {
         assert_eq!(page.matches(label).count(), drawn, "{label}");
     }
-    // The facts stand beside each density. Cpk = 0.2/(3 sigma).
+    // Cpk = 0.2/(3 sigma). It stands in the verdict, and the facts beside each density do not repeat it.
+    assert!(verdict.contains("<td class=\"n\" data-label=\"Cpk\">0.632</td>"), "{verdict}");
     assert_eq!(page.matches("<table class=\"figures\">").count(), 2);
     let beside = page.split("<div class=\"beside\">").nth(1).unwrap().split("</table>").next().unwrap();
-    assert!(beside.contains("<svg class=\"density wide\"") && beside.contains("Cpk</th><td>0.632</td>"), "{beside}");
+    assert!(beside.contains("<svg class=\"density wide\"") && beside.contains("Sigma</th>"), "{beside}");
+    assert!(!beside.contains("Yield</th>") && !beside.contains("Cpk</th>"), "{beside}");
     assert!(page.find("id=\"verdict\"").unwrap() < page.find("id=\"summary\"").unwrap());
     assert!(page.contains("id=\"terms\""));
+}
+
+/// The first screens have verdict, density, contributions and chain of every characteristic. Everything else is folded below one heading, in
+/// the order of a review. Lines of the terminal do not stand between the charts.
+#[test]
+fn details_are_folded() {
+    let text = r##"
+[dimensions]
+a = { nominal = 10, tolerance = 0.3 }
+b = { nominal = 6, tolerance = 0.1 }
+[characteristics]
+gap = { formula = "a - b", lower = 3.8, upper = 4.5, target_yield = 0.9973 }
+"##;
+    let page = page(&study(text));
+    let at = |part: &str| page.find(part).unwrap_or_else(|| panic!("{part} is not in the page"));
+    let order = [
+        "<h2 id=\"verdict\"",
+        "<svg class=\"density wide\"",
+        "<table class=\"drivers\"",
+        "<svg class=\"density chain wide\"",
+        "<h2 id=\"what-if-title\"",
+        "<h2 class=\"details\">",
+        "<h2 id=\"kc-details-0\"",
+        "<h2 id=\"dimensions\"",
+        "<h2 id=\"summary\"",
+        "<h2 id=\"sure\"",
+        "<h2 id=\"about\"",
+        "<h2 id=\"terms\"",
+    ];
+    assert!(order.map(at).is_sorted(), "{:?}", order.map(at));
+    let section = page.split("<section id=\"kc-0\"").nth(1).unwrap().split("</section>").next().unwrap();
+    assert_eq!(section.matches("<p").count() - section.matches("<path").count(), 1, "limits alone: {section}");
+    assert!(!page.contains("<li>yield ") && !page.contains("<li>Cp "), "yield and Cpk stand in the verdict");
+    // Every line of the density has a key. Without a sample of the model there are no bars.
+    for key in ["of-curve", "of-fit", "of-beyond", "of-quantile", "of-nominal"] {
+        assert_eq!(section.matches(&format!("<li class=\"{key}\">")).count(), 1, "{key}: {section}");
+    }
+    assert!(!section.contains("of-bins"), "{section}");
+    // Other folds than those of the details would be folded twice.
+    let folds = page.split("<h2 class=\"details\">").nth(1).unwrap();
+    assert_eq!(folds.matches("<details class=\"fold part").count(), 6, "{folds}");
+}
+
+/// A study without a title has the name of its file as heading, and the date of the report in its title block.
+#[test]
+fn a_page_without_title_names_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let text = "[dimensions]\na = { nominal = 1, tolerance = 0.1 }\n[characteristics]\ny = { formula = \"2*a\" }\n";
+    std::fs::write(path("lid & box.toml"), text).unwrap();
+    let call = ["analyze", &path("lid & box.toml"), "--html", &path("page.html"), "-q"];
+    // 2026-11-28 12:00 UTC by `date -u -d '2026-11-28 12:00' +%s`.
+    let output = sensitol(&call).env("SOURCE_DATE_EPOCH", "1795867200").output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let page = std::fs::read_to_string(path("page.html")).unwrap();
+    assert!(page.contains("<h1>Tolerance report: lid &amp; box.toml</h1>"), "{page}");
+    assert!(page.contains("<dt>Date</dt><dd>2026-11-28</dd>") && page.contains("<dt>Study</dt><dd>lid &amp; box.toml</dd>"));
 }
 
 /// Returns the cells of every row of the contributions, without markup.

@@ -219,6 +219,12 @@ pub(crate) trait CharacteristicSections {
     /// Adds yield, target and verdict, the indices, and the other requirements.
     fn kept(&self, section: &mut Section);
 
+    /// Line of the yield with the rejects on both sides.
+    fn yield_line(&self) -> String;
+
+    /// Line of the indices, None if there are none.
+    fn index_line(&self) -> Option<String>;
+
     /// Reject rates with their error.
     fn rejects(&self) -> Rejects;
 
@@ -348,19 +354,15 @@ impl CharacteristicSections for CharacteristicAnalysis {
 
     fn spread(&self, law: &Pearson, kind: &str) -> SpreadChart {
         let sample = self.evidence.model_sampled.as_ref().and_then(|sampling| sampling.histogram.as_ref());
-        let bars = sample.map_or("", |_| " over the sample of the model; each bar with one standard error");
-        let names = ["0.135 % quantile", "median", "99.865 % quantile"];
+        let names = ["0.135 %", "median", "99.865 %"];
         let outer = self.distribution.quantiles.map_or([None; 3], |of| [0, 3, 6].map(|index| of.values.0[index]));
         let marked = names.into_iter().zip(outer).filter_map(|(name, found)| Some((found?.value, "quantile", name)));
         let mut places: Vec<_> = marked.collect();
-        let fit = if kind == "normal" { "normal".to_owned() } else { format!("Pearson type {kind}") };
+        let fit = if kind == "normal" { "normal fit".to_owned() } else { format!("Pearson fit, type {kind}") };
         let sampled = self.distribution.quantiles.is_some_and(|of| of.source == YieldSource::Samples)
             && self.evidence.verification.as_ref().is_some_and(|of| !of.follows_surface());
-        let source = if sampled { "Distribution of the sample" } else { "Surface distribution" };
-        let words = match &self.evidence.density {
-            Some(table) => format!("{source}{}{bars}; dashed: the Pearson fit ({fit}).", accuracy(table)),
-            None => format!("{fit}{bars}."),
-        };
+        let source = if sampled { "distribution of the sample" } else { "distribution by the surface" };
+        let accuracy = self.evidence.density.as_ref().map_or(String::new(), |table| accuracy(table));
         places.extend(self.mean().map(|mean| (mean, "mean", "mean")));
         SpreadChart {
             law: Some(law.clone()),
@@ -378,7 +380,8 @@ impl CharacteristicSections for CharacteristicAnalysis {
             places,
             sigma: self.sigma().unwrap_or(0.0),
             label: format!("Density of {}", self.name()),
-            words,
+            curve_name: format!("{source}{accuracy}"),
+            law_name: fit,
         }
     }
 
@@ -395,14 +398,10 @@ impl CharacteristicSections for CharacteristicAnalysis {
 
     fn kept(&self, section: &mut Section) {
         let free = self.distribution.distribution_free_yield.as_ref();
-        let shown = |rejects: Rejects| match free {
-            Some(free) => format!("yield {}", distribution_free(free)),
-            None => format!("yield {}", rejects.text().unwrap_or_else(|| "unknown".to_owned())),
-        };
         let target = judged(self.target(), self.verdict());
         let reason = "too few assemblies keep it, or their share is unknown";
         let conditional = conditional(&self.characteristic, self.distribution.conditional.as_ref(), reason);
-        let plain = Line::from(shown(self.rejects()));
+        let plain = Line::from(self.yield_line());
         // The target is that of the assemblies that count.
         section.note(if conditional.is_some() { plain } else { plain.and(target.clone()) });
         conditional.into_iter().for_each(|line| section.note(Line::from(line).and(target.clone())));
@@ -411,20 +410,13 @@ impl CharacteristicSections for CharacteristicAnalysis {
             section.note(format!("all other figures take {} as uniform", names.join(", ")));
         }
         source(self).into_iter().for_each(|line| section.note(line));
-        let named = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {}", index(value)));
-        let of = |figure: fn(&Capability) -> Option<f64>| self.distribution.capability.as_ref().and_then(figure);
-        let join = |indices: Vec<Option<String>>| indices.into_iter().flatten().collect::<Vec<String>>().join("  ");
-        let level = of(Capability::sigma_level).filter(|_| self.rejects().are_resolved());
-        let indices =
-            join(vec![named("Cp", of(|of| of.cp)), named("Cpk", of(|of| of.cpk)), named("sigma level", level)]);
-        if !indices.is_empty() {
-            section.note(indices);
-        }
+        self.index_line().into_iter().for_each(|line| section.note(line));
         lines(self.requirements()).for_each(|line| section.note(line));
         if let Some(of) = &self.distribution.inspection {
             inspected(section, of);
         }
         let mut detail = Vec::new();
+        let of = |figure: fn(&Capability) -> Option<f64>| self.distribution.capability.as_ref().and_then(figure);
         // Indices of measured values are performance indices (Pp, Ppk), not those of a process in control (Cp, Cpk).
         let names = if self.evidence.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
         let indices = [of(|of| of.cp_percentile), of(|of| of.cpk_percentile)];
@@ -433,15 +425,32 @@ impl CharacteristicSections for CharacteristicAnalysis {
         let with_error = |((name, index), error): ((&str, Option<f64>), Option<f64>)| {
             index.map(|index| format!("{name} {}", index_with(index, error)))
         };
-        let quantiles = join(names.into_iter().zip(indices).zip(errors).map(with_error).collect());
+        let quantiles = names.into_iter().zip(indices).zip(errors).filter_map(with_error);
+        let quantiles = quantiles.collect::<Vec<String>>().join("  ");
         if !quantiles.is_empty() {
             detail.note(format!("by quantiles (ISO 22514-2): {quantiles}"));
         }
         pearson_fit(self).into_iter().for_each(|line| detail.wrapped(2, line));
         if let Some(normal) = self.evidence.normal.as_ref().filter(|normal| self.differs(normal)) {
-            detail.note(format!("a normal fit would say: {}", shown(Rejects::new(normal.below, normal.above, None))));
+            let rejects = Rejects::new(normal.below, normal.above, None);
+            detail.note(format!("a normal fit would say: {}", yield_line(&rejects)));
         }
         section.detail(detail);
+    }
+
+    fn yield_line(&self) -> String {
+        match &self.distribution.distribution_free_yield {
+            Some(free) => format!("yield {}", distribution_free(free)),
+            None => yield_line(&self.rejects()),
+        }
+    }
+
+    fn index_line(&self) -> Option<String> {
+        let found = self.distribution.capability.as_ref()?;
+        let level = found.sigma_level().filter(|_| self.rejects().are_resolved());
+        let named = [("Cp", found.cp), ("Cpk", found.cpk), ("sigma level", level)];
+        let indices = named.into_iter().filter_map(|(name, value)| Some(format!("{name} {}", index(value?))));
+        Some(indices.collect::<Vec<String>>().join("  ")).filter(|line| !line.is_empty())
     }
 
     fn rejects(&self) -> Rejects {
@@ -515,6 +524,11 @@ impl CharacteristicSections for CharacteristicAnalysis {
     }
 }
 
+/// Line of a yield with the rejects on both sides.
+fn yield_line(rejects: &Rejects) -> String {
+    format!("yield {}", rejects.text().unwrap_or_else(|| "unknown".to_owned()))
+}
+
 /// Returns the error of a drawn density in words, empty if it is too small to be seen.
 fn accuracy(table: &[[f64; 3]]) -> String {
     /// Least visible error, as a part of the peak: the width of a line.
@@ -522,7 +536,7 @@ fn accuracy(table: &[[f64; 3]]) -> String {
     let most = |of: fn(&[f64; 3]) -> f64| table.iter().map(of).filter(|x| x.is_finite()).fold(0.0, f64::max);
     let (peak, error) = (most(|row| row[1]), most(|row| row[2]));
     match error > SEEN * peak {
-        true => format!(" from points, within ± {} % of its peak", significant(100.0 * error / peak, 2)),
+        true => format!(", from points within ± {} % of its peak", significant(100.0 * error / peak, 2)),
         false => String::new(),
     }
 }

@@ -50,8 +50,10 @@ pub enum Fill {
     Span,
     /// An interval that exceeds the limits.
     Over,
-    /// The amount before.
+    /// The amount before a change, in the upper half of the row.
     Before,
+    /// The amount after a change, in the lower half of the row.
+    After,
 }
 
 /// Distribution of a value: a density, a histogram, or one over the other.
@@ -79,8 +81,10 @@ pub struct SpreadChart {
     pub sigma: f64,
     /// Label, for readers who do not see the chart.
     pub label: String,
-    /// Text below the chart.
-    pub words: String,
+    /// Name of `curve`, for the legend.
+    pub curve_name: String,
+    /// Name of `law`, for the legend.
+    pub law_name: String,
 }
 
 /// Curves and points over a horizontal axis.

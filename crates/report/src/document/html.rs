@@ -38,12 +38,13 @@ fn section(index: usize, section: &Section) -> String {
 }
 
 /// Writes bars as the rows of a table.
-fn bars(bars: &Bars) -> String {
+pub(crate) fn bars(bars: &Bars) -> String {
     let class = |fill: Fill| match fill {
         Fill::Linear => "linear",
         Fill::Span => "span",
         Fill::Over => "over",
         Fill::Before => "was",
+        Fill::After => "after",
     };
     // Bars with a legend fill the height of the row. Intervals leave space for the limit marks and have a remark column.
     let (kind, place) = match bars.legend.is_empty() {
@@ -56,6 +57,11 @@ fn bars(bars: &Bars) -> String {
     let mut text = format!("<table class=\"{kind}\"><caption class=\"sr\">{caption}</caption><tbody>\n");
     for Bar { name, parts, text: amount, remark } in &bars.rows {
         let part = |&(fill, [x, width]): &(Fill, [f64; 2])| {
+            let place = match fill {
+                Fill::Before => "height=\"4.5\"",
+                Fill::After => "y=\"5.5\" height=\"4.5\"",
+                _ => place,
+            };
             format!("<rect class=\"{}\" x=\"{x}\" width=\"{width}\" {place}/>", class(fill))
         };
         let parts: String = parts.iter().map(part).collect();

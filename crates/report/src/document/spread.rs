@@ -188,16 +188,41 @@ impl Labels {
 /// density nor sample, or if the extent is zero.
 pub(super) fn figure(of: &SpreadChart) -> Option<String> {
     let drawn: Option<String> = FRAMES.iter().map(|frame| drawing(of, frame)).collect();
-    let key = |class: &str, name: &str| format!("<li class=\"{class}\">{}</li>", escaped(name));
-    let quantiles = of.places.iter().filter(|place| place.1 == "quantile");
+    Some(format!("<figure>\n{}<figcaption>{}</figcaption>\n</figure>\n", drawn?, legend(of)))
+}
+
+/// Legend of the lines and areas that are drawn. Limits and ranges carry their names.
+fn legend(of: &SpreadChart) -> String {
     let sigma = of.sigma.abs();
-    let named = quantiles.map(|(x, kind, name)| {
-        let near = if sigma > 0.0 { sigma } else { 1e-3 * x.abs() };
-        key(kind, &format!("{name} {}", beside(*x, near)))
-    });
-    let legend: String = named.collect();
-    let legend = if legend.is_empty() { legend } else { format!(" <ul class=\"legend\">{legend}</ul>") };
-    Some(format!("<figure>\n{}<figcaption>{}{legend}</figcaption>\n</figure>\n", drawn?, escaped(&of.words)))
+    let number = |x: f64| beside(x, if sigma > 0.0 { sigma } else { 1e-3 * x.abs() });
+    let mut keys: Vec<(&str, String)> = Vec::new();
+    if of.bins.is_some() {
+        keys.push(("of-bins", "sample, each bar with one standard error".to_owned()));
+    }
+    match (&of.law, &of.curve) {
+        (Some(_), Some(_)) => {
+            keys.extend([("of-curve", of.curve_name.clone()), ("of-fit", of.law_name.clone())]);
+        }
+        (Some(_), None) => keys.push(("of-curve", of.law_name.clone())),
+        (None, Some(_)) => keys.push(("of-curve", of.curve_name.clone())),
+        (None, None) => {}
+    }
+    if of.rejects.iter().flatten().any(|rejected| !is_harmless(rejected)) {
+        keys.push(("of-beyond", "beyond a limit".to_owned()));
+    }
+    let quantiles = of.places.iter().filter(|place| place.1 == "quantile");
+    let quantiles: Vec<String> = quantiles.map(|(x, _, name)| format!("{name} {}", number(*x))).collect();
+    if !quantiles.is_empty() {
+        keys.push(("of-quantile", format!("quantiles: {}", quantiles.join(", "))));
+    }
+    keys.extend(of.nominal.map(|nominal| ("of-nominal", format!("nominal {}", number(nominal)))));
+    let key = |(class, name): &(&str, String)| format!("<li class=\"{class}\">{}</li>", escaped(name));
+    format!("<ul class=\"legend\">{}</ul>", keys.iter().map(key).collect::<String>())
+}
+
+/// True for rejects that are not known to exist: none, or a bound.
+fn is_harmless(rejected: &str) -> bool {
+    rejected == NO_REJECTS || rejected.starts_with('<')
 }
 
 /// Text of the chart for screen readers.
@@ -323,7 +348,7 @@ impl<'c> DensityPlot<'c> {
                     _ => (rejected.clone(), side),
                 };
                 // Nothing is bad about a limit that rejects nothing.
-                let class = if rejected == NO_REJECTS { "" } else { "rejected" };
+                let class = if is_harmless(rejected) { "" } else { "rejected" };
                 labels.put(class, text, (x, side), width);
             }
         }
@@ -464,10 +489,10 @@ impl<'c> DensityDrawing<'c> {
     fn axis(&self, svg: &mut String) {
         let (base, frame) = (self.base, self.plot.frame);
         let width = frame.width;
-        let _ = writeln!(svg, "<path class=\"axis\" d=\"M0 {base}H{width}\"/>");
+        let _ = writeln!(svg, "<path class=\"base\" d=\"M0 {base}H{width}\"/>");
         let mut end = f64::NEG_INFINITY;
         for Tick { x, label } in self.plot.scale.ticks(frame.ticks) {
-            let _ = write!(svg, "<path class=\"axis\" d=\"M{x:.1} {base}v4\"/>");
+            let _ = write!(svg, "<path class=\"base\" d=\"M{x:.1} {base}v5\"/>");
             let half = 0.5 * LETTER * label.chars().count() as f64;
             if x - half < end.max(0.0) || x + half > width {
                 continue;

@@ -1,19 +1,25 @@
 //! The page of an analysis.
 
 use crate::Report;
-use crate::document::html::{head, sections};
+use crate::document::Element;
+use crate::document::html::{blocks, head};
 use crate::document::number::{plain, plural};
 use crate::head::seed;
+use crate::html::characteristic::{PRINTED, screen};
+use crate::html::part::Part;
 use crate::html::terms::terms;
 use crate::html::verdict::{JudgedCharacteristic, Together, Words, verdict};
 use crate::html::what_if::WhatIf;
 use crate::html::{
-    Fact, ScriptData, certainty as sure, evidence, fact, inputs, json, others, picture, provenance, render,
+    Fact, ScriptData, certainty as sure, fact, inputs, json, others, picture, provenance, render,
     what_if_section as tries,
 };
 use sensitol::analysis::Analysis;
 use sensitol::method::Basis;
 use sensitol::summary::RunSummary;
+
+/// Columns of the summary that the verdict has as well.
+const OF_VERDICT: [&str; 3] = ["Cpk", "yield", "verdict"];
 
 /// Writes an analysis as one page of HTML. With a [`WhatIf`], the script of the page computes results for other tolerances and means, as
 /// [`Surface::at`](sensitol::analysis::Surface::at) does.
@@ -22,12 +28,6 @@ use sensitol::summary::RunSummary;
 pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let possible = what_if.filter(|what_if| what_if.possible());
     let mut document = report.brief_document();
-    evidence::add(report, &mut document.sections);
-    let tries = match (possible, what_if.and_then(WhatIf::impossible)) {
-        (Some(what_if), _) => tries::section(what_if),
-        (None, Some(why)) => tries::impossible(&why),
-        (None, None) => String::new(),
-    };
     let all = &report.analysis.characteristics;
     let rows: Vec<JudgedCharacteristic<'_>> = all
         .iter()
@@ -37,21 +37,52 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let joint = report.analysis.joint.as_ref();
     let joint = joint.map(|of| Together::about(of.value, of.error, report.analysis.joint_requirement.as_ref()));
     let words = Words { warnings: others(&document, &report.warnings), ..Words::default() };
-    let errors: Vec<sure::Row> = all.iter().flat_map(|one| sure::analysed(one, None)).collect();
-    let sure = sure::section(&errors, sure::ANALYSED, &repeated(report));
-    let judged = verdict(&rows, joint, &words);
-    // The summary repeats the verdict. It follows the sections if the verdict has a table, and precedes them otherwise.
-    let [first, rest] = match rows.iter().any(JudgedCharacteristic::counts) {
-        true => [judged, head(&document) + &sure],
-        false => [judged + &head(&document), sure],
+    let mut first = verdict(&rows, joint, &words);
+    let is_judged = rows.iter().any(JudgedCharacteristic::counts);
+    // The summary repeats the verdict, unless nothing is judged.
+    let summary = match is_judged {
+        true => {
+            without_verdict(&mut document.head);
+            Part::new("summary", "Summary", blocks(&document.head)).on_screen()
+        }
+        false => {
+            first += &head(&document);
+            String::new()
+        }
     };
+    let (mut screens, mut details) = (String::new(), String::new());
+    for (index, (one, section)) in all.iter().zip(std::mem::take(&mut document.sections)).enumerate() {
+        let screen = screen(report, index, one, section);
+        screens += &screen.first;
+        details += &screen.details;
+    }
+    if let Some(left @ 1..) = all.len().checked_sub(PRINTED) {
+        let sections = plural(left, "more characteristic is", "more characteristics are");
+        screens += &format!("<p class=\"note print-only\">The sections of {sections} in the page itself.</p>\n");
+    }
     let (assembly, picture) = match picture::picture(report) {
         Some(picture) => (picture.section, Some(picture.data)),
         None => (String::new(), None),
     };
-    let sections = assembly + &sections(&document) + &inputs::section(report);
-    let parts = [first, sections, tries + &rest, terms("analyze", false)];
+    match (possible, what_if.and_then(WhatIf::impossible)) {
+        (Some(what_if), _) => screens += &tries::section(what_if),
+        (None, Some(why)) => details += &tries::impossible(&why),
+        (None, None) => {}
+    }
+    let errors: Vec<sure::Row> = all.iter().flat_map(|one| sure::analysed(one, None)).collect();
+    let sure = sure::section(&errors, sure::ANALYSED, &repeated(report));
+    let details = details + &inputs::section(report) + &summary + &sure;
+    let parts = [first, assembly + &screens, details, terms("analyze", false)];
     render(&report.head, facts(report), parts, ScriptData { what_if: possible.map(json), picture })
+}
+
+/// Hides the columns of the summary that the verdict has: yield and Cpk stand once on a page.
+fn without_verdict(head: &mut [Element]) {
+    for block in head {
+        if let Element::Table(table) = block {
+            table.columns.iter_mut().for_each(|column| column.page &= !OF_VERDICT.contains(&column.heading));
+        }
+    }
 }
 
 /// Sentence with the method and the seed that reproduce the figures.

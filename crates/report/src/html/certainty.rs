@@ -5,6 +5,7 @@ use std::fmt::Write;
 use crate::document::number::{beside, estimated, estimated_beside, percent, plain, significant, uncertainty, yielded};
 use crate::document::svg::escaped;
 use crate::figures::{Figures, Named};
+use crate::html::part::Part;
 use crate::reject_rate::rejects;
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::rare::RareCharacteristic;
@@ -36,7 +37,7 @@ pub(super) fn section(rows: &[Row], titles: [&str; 3], words: &str) -> String {
     }
     let titles = titles.map(|title| format!("<th scope=\"col\" class=\"n\">{title}</th>")).concat();
     let mut text = format!(
-        "<section aria-labelledby=\"sure\">\n<h2 id=\"sure\">How sure is this</h2>\n<div class=\"wide\" tabindex=\"0\"><table><thead><tr><th scope=\"col\">characteristic</th><th scope=\"col\">figure</th>{titles}</tr></thead><tbody>\n"
+        "<div class=\"wide\" tabindex=\"0\"><table><thead><tr><th scope=\"col\">characteristic</th><th scope=\"col\">figure</th>{titles}</tr></thead><tbody>\n"
     );
     let mut last = None;
     for Row { characteristic, figure, value, error, beside } in rows {
@@ -48,7 +49,8 @@ pub(super) fn section(rows: &[Row], titles: [&str; 3], words: &str) -> String {
         let cells = [value, error, beside].map(|cell| format!("<td class=\"n\">{}</td>", escaped(cell))).concat();
         let _ = writeln!(text, "<tr>{first}<td>{figure}</td>{cells}</tr>");
     }
-    text + &format!("</tbody></table></div>\n<p class=\"note\">{}</p>\n</section>\n", escaped(words))
+    text += &format!("</tbody></table></div>\n<p class=\"note\">{}</p>\n", escaped(words));
+    Part::new("sure", "How sure is this", text).folded()
 }
 
 /// Rows of an analysis, beside the values by points of the model. Those of a simulation are preferred if there is one.

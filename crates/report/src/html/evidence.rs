@@ -1,21 +1,14 @@
-//! Answers to the next questions of a review, for each characteristic: the tails, the difference of mean and nominal value, the chain of
-//! dimensions.
+//! Answers to the next questions of a review, for each characteristic: the tails, and the difference of mean and nominal value.
 
-use crate::document::number;
-use crate::html::map;
 use std::fmt::Write;
 
-use crate::analysis::analysis_document::SHARES;
-use crate::analysis::statistics::is_of_statistics;
+use crate::DimensionReport;
 use crate::document::number::{band, beside, estimated, plain, power_of_ten};
 use crate::document::svg::escaped;
-use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section, html};
+use crate::document::{Bar, Bars, Extent, Fill, Line, html};
 use crate::figures::FittedFigures;
 use crate::figures::{Figures, Named};
-use crate::html::facts::facts;
-use crate::html::pareto::pareto;
-use crate::{DimensionReport, Report};
-use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
+use sensitol::analysis::CharacteristicAnalysis;
 use sensitol::verification::TailPoint;
 use sensitol_numeric::capability::Law;
 use sensitol_numeric::pearson::Pearson;
@@ -24,62 +17,10 @@ use sensitol_numeric::pearson::Pearson;
 const SEEN: f64 = 0.01;
 /// Most rows of the table of shifts.
 const SHIFTS: usize = 12;
-/// Greatest deviation of a slope from 1 or -1 for a link of a dimension chain.
-const STRAIGHT: f64 = 0.05;
-/// Most links of a chain that is drawn.
-const LINKS: usize = 24;
-/// Columns that the table of all dimensions has as well.
-const OF_INPUTS: [&str; 3] = ["nominal", "tolerance", "unit"];
 /// Share at which the drawing of a tail begins.
 const FROM: f64 = 0.1;
 /// Share to which a tail is drawn at least.
 const TO: f64 = 1e-5;
-
-/// Adds the evidence of each characteristic to its section.
-pub(super) fn add(report: &Report, sections: &mut [Section]) {
-    for (one, section) in report.analysis.characteristics.iter().zip(sections) {
-        // The facts replace the table of statistics that a terminal shows. The ranges are drawn below the density.
-        section.blocks.retain(|block| !matches!(block, Element::Table(table) if is_of_statistics(table)));
-        let findings = section.blocks.iter().take_while(|block| matches!(block, Element::Finding(_))).count();
-        section.blocks.insert(findings, Element::Markup(facts(one)));
-        section.blocks.retain_mut(|block| match block {
-            Element::Aside(aside) if aside.title == SHARES => {
-                aside.blocks = pareto(report, one).map(Element::Markup).into_iter().collect();
-                !aside.blocks.is_empty()
-            }
-            _ => true,
-        });
-        section.blocks.iter_mut().for_each(fold_derivatives);
-        let mut drawn = |title: &'static str, block: Option<Element>| {
-            let blocks = block.into_iter().collect::<Vec<_>>();
-            if !blocks.is_empty() {
-                crate::document::Blocks::aside(section, title, blocks);
-            }
-        };
-        drawn("Tails", tails(one).map(Element::Markup));
-        drawn("Dimension chain", chain(one, &report.dimensions).map(Element::Markup));
-        let shifts = shifts(one, &report.dimensions).map(|bars| Element::Chart(Chart::Bars(bars)));
-        drawn("From the nominal value to the mean", shifts);
-        drawn("Interactions", map::map(one).map(Element::Markup));
-    }
-}
-
-/// Folds the derivatives of a characteristic, without the columns that the table of all dimensions has.
-fn fold_derivatives(block: &mut Element) {
-    let Element::Detail(inner) = block else { return };
-    let of_derivatives = |block: &Element| matches!(block, Element::Table(table) if table.name == "sensitivities");
-    let Some(place) = inner.iter().position(of_derivatives) else { return };
-    let rest = inner.split_off(place);
-    let mut folded = String::new();
-    for mut block in rest {
-        if let Element::Table(table) = &mut block {
-            table.columns.iter_mut().for_each(|column| column.page &= !OF_INPUTS.contains(&column.heading));
-        }
-        folded += &html::blocks(&[block]);
-    }
-    let title = "Slopes, curvatures and shifts of the mean as a table";
-    inner.push(Element::Markup(format!("<details class=\"fold\"><summary>{title}</summary>\n{folded}</details>\n")));
-}
 
 /// One limit with the tail of the Pearson fit and the reject rates by surface and model.
 struct Tail<'l> {
@@ -96,7 +37,7 @@ struct Tail<'l> {
 }
 
 /// Draws the reject rate near each limit on a logarithmic scale: the Pearson fit as a line, surface and model as marks at the limit.
-fn tails(one: &CharacteristicAnalysis) -> Option<String> {
+pub(super) fn tails(one: &CharacteristicAnalysis) -> Option<String> {
     let Some(Law::Pearson(law)) = one.fitted() else { return None };
     let of_surface = one.evidence.surface_law.as_ref();
     let by_model = one.evidence.verification.as_ref().map_or([None, None], |found| found.beyond);
@@ -326,7 +267,7 @@ impl<'t> Panel<'t> {
 }
 
 /// Bars from the nominal value to the mean, a step for each cause. Returns None if the two nearly agree, or are unknown.
-fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option<Bars> {
+pub(super) fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option<String> {
     let (nominal, mean, sigma) = (one.nominal?, one.mean()?, one.sigma()?);
     let seen = SEEN * sigma;
     if !(sigma > 0.0 && (mean - nominal).abs() >= seen) {
@@ -385,99 +326,6 @@ fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Optio
         }
     }));
     rows.push(end("mean", mean));
-    Some(Bars {
-        caption: format!("Shifts of the mean of {} above 1 % of sigma", one.name()),
-        rows,
-        marks: Vec::new(),
-        legend: Vec::new(),
-    })
-}
-
-/// Draws the dimension chain as arrows, each from the end of the one before. Returns None if the characteristic is not a sum and
-/// difference of its dimensions.
-fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option<String> {
-    let nominal = one.nominal?;
-    let straight = |row: &&Sensitivity| row.first.is_some_and(|first| first != 0.0);
-    let rows: Vec<&Sensitivity> = one.sensitivities.iter().filter(straight).collect();
-    let curved = |row: &&&Sensitivity| row.curvature_share.is_some_and(|share| share > 1e-6);
-    if !(2..=LINKS).contains(&rows.len())
-        || rows.iter().any(|row| curved(&row))
-        || one.contributions.interactions.iter().any(|pair| pair.mixed != Some(0.0))
-    {
-        return None;
-    }
-    let links: Option<Vec<(&DimensionReport, f64)>> = (rows.iter())
-        .map(|row| {
-            let first = row.first?;
-            let of = dimensions.iter().find(|of| of.name == row.dimension)?;
-            ((first.abs() - 1.0).abs() <= STRAIGHT).then_some((of, first.signum()))
-        })
-        .collect();
-    let links = links?;
-    let sum: f64 = links.iter().map(|(of, sign)| sign * of.nominal).sum();
-    let size = links.iter().map(|(of, _)| of.nominal.abs()).fold(nominal.abs(), f64::max);
-    // A remainder would be a link without a name.
-    if (sum - nominal).abs() > 1e-9 * size || size == 0.0 {
-        return None;
-    }
-    Some([("wide", 736.0), ("narrow", 358.0)].map(|(class, width)| drawing(one, &links, class, width)).concat())
-}
-
-fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], class: &str, width: f64) -> String {
-    /// Height of a row in pixels.
-    const ROW: f64 = 26.0;
-    /// Width of a letter in pixels.
-    const LETTER: f64 = 7.0;
-    let longest = |texts: &mut dyn Iterator<Item = String>| texts.map(|text| text.chars().count()).max().unwrap_or(0);
-    let band = |of: &DimensionReport| of.tolerance.map(band).unwrap_or_default();
-    let notes = longest(&mut links.iter().map(|(of, _)| band(of)));
-    let values = longest(&mut links.iter().map(|(of, _)| plain(of.nominal)));
-    // A value at the middle of a short link at the end of the scale must not reach into the column of bands.
-    let room = LETTER * (notes as f64 + 0.5 * values as f64 + 1.0);
-    let (left, right) = if width > 500.0 { (110.0, room.max(110.0)) } else { (84.0, room.max(74.0)) };
-    let mut at = 0.0;
-    let ends: Vec<[f64; 2]> = (links.iter())
-        .map(|(of, sign)| {
-            let from = at;
-            at += sign * of.nominal;
-            [from, at]
-        })
-        .collect();
-    let Some(scale) = Extent::over(ends.iter().flatten().copied(), 0.02, width - left - right) else {
-        return String::new();
-    };
-    let x = |value: f64| left + scale.at(value);
-    let tall = ROW * (links.len() + 1) as f64 + 8.0;
-    let unit = one.unit().map(|unit| format!(" {unit}")).unwrap_or_default();
-    let named: Vec<String> = (links.iter())
-        .map(|(of, sign)| format!("{}{} {}", if *sign < 0.0 { "minus " } else { "plus " }, of.name, plain(of.nominal)))
-        .collect();
-    let nominal = plain(one.nominal.unwrap_or(at));
-    let label = format!("Chain of {}: {}, which is {nominal}{unit}", one.name(), named.join(", "));
-    let mut svg = format!(
-        "<svg class=\"density chain {class}\" viewBox=\"0 0 {width} {tall}\" role=\"img\" aria-label=\"{}\">\n",
-        escaped(&label)
-    );
-    let datum = x(0.0);
-    let _ = writeln!(svg, "<path class=\"datum\" d=\"M{datum:.1} 2V{}\"/>", tall - 4.0);
-    let mut arrow = |row: usize, [from, to]: [f64; 2], (name, value, note, class): (&str, String, String, &str)| {
-        let (y, a, b) = (ROW * (row as f64 + 0.5) + 4.0, x(from), x(to));
-        let head = if b >= a { -7.0 } else { 7.0 };
-        let _ = writeln!(svg, "<path class=\"{class}\" d=\"M{a:.1} {y}H{b:.1}m{head} -4l{} 4l{head} 4\"/>", -head);
-        let _ = writeln!(svg, "<path class=\"axis\" d=\"M{b:.1} {y}V{}\"/>", y + ROW);
-        let _ =
-            writeln!(svg, "<text class=\"name\" x=\"0\" y=\"{:.1}\">{}</text>", y + 4.0, escaped(&number::short(name)));
-        let _ = writeln!(
-            svg,
-            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{value}</text>",
-            0.5 * (a + b),
-            y - 4.0
-        );
-        let _ = writeln!(svg, "<text x=\"{width}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>", y + 4.0, escaped(&note));
-    };
-    for (row, ((of, _), ends)) in links.iter().zip(&ends).enumerate() {
-        arrow(row, *ends, (&of.name, plain(of.nominal), band(of), "link"));
-    }
-    arrow(links.len(), [0.0, at], (one.name(), nominal, String::new(), "link gap"));
-    svg + "</svg>\n"
+    let caption = format!("Shifts of the mean of {} above 1 % of sigma", one.name());
+    Some(html::bars(&Bars { caption, rows, marks: Vec::new(), legend: Vec::new() }))
 }

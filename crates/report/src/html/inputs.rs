@@ -7,6 +7,7 @@ use crate::document::number::{UNKNOWN, known, percent, percent_within, plain, pl
 use crate::document::svg::escaped;
 use crate::figures::Named;
 use crate::html::pareto::slope;
+use crate::html::part::Part;
 use crate::{DimensionReport, Report};
 use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 
@@ -40,8 +41,7 @@ pub(super) fn section(report: &Report) -> String {
     rest.sort_unstable();
     let (first, others) = all.split_at(all.len().min(SIDE));
     let table = Table { report, slopes: all.len() <= SLOPES };
-    let mut text = "<section aria-labelledby=\"dimensions\">\n<h2 id=\"dimensions\">Dimensions</h2>\n".to_owned();
-    text += &table.of(&rows, 0, first, true);
+    let mut text = table.of(&rows, 0, first, true);
     if !rest.is_empty() {
         let most = least.map(|share| format!(", at most {} % of a variance each", percent(share))).unwrap_or_default();
         let more = plural(rest.len(), "more dimension", "more dimensions");
@@ -57,11 +57,9 @@ pub(super) fn section(report: &Report) -> String {
     let exact = all.iter().flat_map(|one| &one.sensitivities).all(|row| row.exact || row.first.is_none());
     let marked = if exact || !table.slopes { "" } else { " ≈ marks differences." };
     let slopes = if table.slopes { "Slope: at the means, per unit of the dimension. " } else { "" };
-    let _ = writeln!(
-        text,
-        "<p class=\"note\">{slopes}Share: of the variance, in %, by the dimension alone.{marked}</p>\n</section>"
-    );
-    text
+    let _ =
+        writeln!(text, "<p class=\"note\">{slopes}Share: of the variance, in %, by the dimension alone.{marked}</p>");
+    Part::new("dimensions", "Dimensions", text).folded()
 }
 
 fn folded(title: &str, inner: &str) -> String {

@@ -6,12 +6,15 @@
 
 mod analysis;
 mod certainty;
+mod chain;
+mod characteristic;
 mod evidence;
 mod facts;
 mod inputs;
 mod map;
 mod pages;
 mod pareto;
+mod part;
 mod picture;
 mod terms;
 mod verdict;
@@ -30,6 +33,7 @@ use crate::document::html::{blocks, head as summary, sections};
 use crate::document::number::significant;
 use crate::document::svg::escaped;
 use crate::head::findings;
+use crate::html::part::Part;
 use crate::{DifferenceReport, Head, LotReport, WarningReport};
 use sensitol::summary::RunSummary;
 
@@ -43,6 +47,9 @@ const SCRIPT: &str = concat!(
     include_str!("live.js"),
     include_str!("page.js")
 );
+/// Name of the cell with the file of the study.
+const STUDY: &str = "Study";
+
 /// Name and text of a fact about a run.
 struct Fact {
     name: &'static str,
@@ -104,7 +111,7 @@ fn others(document: &Document, warnings: &[WarningReport]) -> String {
 fn block(head: &Head) -> Vec<(&str, &str)> {
     let mut cells: Vec<(&str, &str)> = head.block.iter().map(|(name, text)| (*name, text.as_str())).collect();
     if let Some(first) = head.study_sha256.get(..12) {
-        cells.push(("Study, SHA-256", first));
+        cells.push(("SHA-256", first));
     }
     cells.push(("sensitol", head.sensitol));
     cells
@@ -150,10 +157,13 @@ fn render(head: &Head, facts: Vec<Fact>, [first, sections, rest, terms]: [String
     let policy =
         format!("default-src 'none'; style-src '{}';{allowed} base-uri 'none'; form-action 'none'", hash(&style));
     let (policy, command) = (escaped(&policy), escaped(head.command));
-    let title = escaped(head.title.as_deref().unwrap_or("Tolerance report"));
+    let study = head.block.iter().find(|(name, _)| *name == STUDY).map(|(_, text)| format!("Tolerance report: {text}"));
+    let title = head.title.as_deref().or(study.as_deref()).unwrap_or("Tolerance report");
+    let title = escaped(title);
     let entry = |name: &str, text: &str| format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(name), escaped(text));
     let block: String = block(head).into_iter().map(|(name, text)| entry(name, text)).collect();
     let facts: String = facts.iter().map(|one| entry(one.name, &one.text)).collect();
+    let about = Part::new("about", "What was done", format!("<dl class=\"facts\">\n{facts}</dl>\n")).on_screen();
     format!(
         r#"<!DOCTYPE html>
 <html lang="en">
@@ -176,17 +186,36 @@ fn render(head: &Head, facts: Vec<Fact>, [first, sections, rest, terms]: [String
 <main>
 {first}
 {sections}
+<h2 class="details">Details</h2>
 {rest}
-<section aria-labelledby="about">
-<h2 id="about">What was done</h2>
-<dl class="facts">
-{facts}</dl>
-</section>
+{about}
 {terms}
 </main>
 {markup}</body>
 </html>"#
     )
+}
+
+/// Paper of a print.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Paper {
+    /// ISO 216, 210 mm by 297 mm.
+    A4,
+    /// ANSI A, 8.5 in by 11 in.
+    Letter,
+}
+
+/// Returns the page with the size of its paper, for a browser that prints it. The policy of the page allows the longer style.
+pub fn on_paper(page: &str, paper: Paper) -> String {
+    let styled = page.split_once("<style>").and_then(|(_, rest)| rest.split_once("</style>"));
+    let Some((style, _)) = styled else { return page.to_owned() };
+    let size = match paper {
+        Paper::A4 => "A4",
+        Paper::Letter => "letter",
+    };
+    let sized = format!("{style}@page {{ size: {size}; }}\n");
+    let page = page.replacen(&hash(style), &hash(&sized), 1);
+    page.replacen(&format!("<style>{style}</style>"), &format!("<style>{sized}</style>"), 1)
 }
 
 /// Returns the hash of a script or style as a content-security policy has it.

@@ -114,7 +114,7 @@
   };
 
   const show = () => {
-    tried.forEach(({ one, card }, i) => {
+    tried.forEach(({ one, card, index }, i) => {
       const then = figures(one, before[i]), verdict = judged(results[i], one), badge = card.querySelector('[data-figure="verdict"]');
       for (const [name, text] of Object.entries(figures(one, results[i]))) {
         const cell = card.querySelector(`[data-figure="${name}"]`);
@@ -124,6 +124,12 @@
       }
       card.querySelector("[data-by]").textContent = source(results[i], one);
       badge.textContent = verdict;
+      // One line of the figures that matter, which stays on the screen.
+      const line = panel.querySelector(`[data-line="${index}"] span`), shown = figures(one, results[i]);
+      const names = shown.yield === "-" ? ["mean", "sigma"] : shown.Cpk === "-" ? ["yield"] : ["yield", "Cpk"];
+      const told = (name) => `${name === "yield" ? "" : `${name} `}${then[name] === shown[name] ? shown[name] : `${then[name]} → ${shown[name]}`}`;
+      line.textContent = names.map(told).join(", ");
+      line.classList.toggle("changed", names.some((name) => then[name] !== shown[name]));
       for (const [name, word] of [["good", "target met"], ["bad", "target missed"], ["unsure", "inconclusive"]]) badge.classList.toggle(name, verdict === word);
       draw(card, one, before[i], results[i]);
     });

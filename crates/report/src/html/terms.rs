@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::html::part::Part;
+
 /// Commands whose pages use a term: all.
 const ALL: &[&str] = &["analyze", "simulate", "compare", "sweep", "allocate"];
 /// Commands that use a surface.
@@ -67,10 +69,9 @@ pub(super) fn terms(command: &str, rare: bool) -> String {
         true => all.contains(&"rare") || *all == ALL,
         false => all.contains(&command),
     };
-    let mut text =
-        "<section aria-labelledby=\"terms\">\n<h2 id=\"terms\">Terms</h2>\n<dl class=\"terms\">\n".to_owned();
+    let mut text = "<dl class=\"terms\">\n".to_owned();
     for (term, meaning, _) in TERMS.iter().filter(|(.., all)| has(all)) {
         let _ = writeln!(text, "<div><dt>{term}</dt><dd>{meaning}</dd></div>");
     }
-    text + "</dl>\n</section>\n"
+    Part::new("terms", "Terms", text + "</dl>\n").folded()
 }

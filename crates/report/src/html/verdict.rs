@@ -211,7 +211,7 @@ impl<'r> JudgedCharacteristic<'r> {
 
     /// Counts the warnings that concern the characteristic.
     pub(super) fn warned(self, warnings: &[WarningReport]) -> Self {
-        let concerned = warnings.iter().filter(|one| one.characteristic.as_deref() == Some(self.name));
+        let concerned = warnings.iter().filter(|one| one.asks() && one.characteristic.as_deref() == Some(self.name));
         Self { warned: concerned.count(), ..self }
     }
 
@@ -475,6 +475,14 @@ pub(super) fn interval(ends: [f64; 2]) -> String {
     format!("{low} – {high} %")
 }
 
+/// Writes a cell of figures, with the label that it has on a phone.
+fn labelled(label: &str, text: &str) -> String {
+    if text.is_empty() {
+        return "<td class=\"n\"></td>".to_owned();
+    }
+    format!("<td class=\"n\" data-label=\"{label}\">{text}</td>")
+}
+
 /// Optional columns of the table, and the scale of its gauges.
 struct Table {
     gauge: Gauge,
@@ -522,7 +530,7 @@ impl Table {
         let unknown = || if one.limited() { "unknown".to_owned() } else { String::new() };
         let sides: Vec<String> = one.sides.iter().map(|side| escaped(side)).collect();
         let mut cells = format!(
-            "<tr><th scope=\"row\">{name}{unit}{at}{warned}</th><td>{}</td><td>{}</td><td class=\"n\"><strong>{}</strong><br><small>{}</small></td><td class=\"n\">{}</td><td class=\"n\">{}</td>",
+            "<tr><th scope=\"row\">{name}{unit}{at}{warned}</th><td>{}</td><td>{}</td><td class=\"n\" data-label=\"yield\"><strong>{}</strong><br><small>{}</small></td>{}{}",
             verdicts.join("<br>"),
             if one.limited() {
                 self.gauge.svg(one.yield_, one.interval, one.target, one.before)
@@ -531,11 +539,11 @@ impl Table {
             },
             escaped(&one.yield_text.clone().unwrap_or_else(unknown)),
             one.interval.map(interval).unwrap_or_default(),
-            targets.join("<br>"),
-            sides.join("<br>"),
+            labelled("target", &targets.join("<br>")),
+            labelled("rejects", &sides.join("<br>")),
         );
         if self.cpk {
-            let _ = write!(cells, "<td class=\"n\">{}</td>", one.cpk.map(index).unwrap_or_default());
+            cells += &labelled("Cpk", &one.cpk.map(index).unwrap_or_default());
         }
         if self.worst {
             let ends = one.worst.as_ref().map(|KnownWorstCase { kind, texts: [low, high], .. }| {
@@ -547,7 +555,7 @@ impl Table {
                 format!("{low} –<br>{high}{known}")
             });
             let ends = ends.unwrap_or_default();
-            let _ = write!(cells, "<td class=\"n\">{ends}</td>");
+            cells += &labelled("worst case", &ends);
         }
         cells + "</tr>\n"
     }
@@ -557,14 +565,14 @@ impl Table {
         let target = of.judged.and_then(|judged| judged.requirement.target_yield());
         let rest = "<td></td>".repeat(usize::from(self.cpk) + usize::from(self.worst));
         format!(
-            "<tr class=\"all\"><th scope=\"row\">{} together</th><td>{}</td><td>{}</td><td class=\"n\"><strong>{}</strong><br><small>{}</small></td><td class=\"n\">{}</td><td class=\"n\">{} ppm</td>{rest}</tr>\n",
+            "<tr class=\"all\"><th scope=\"row\">{} together</th><td>{}</td><td>{}</td><td class=\"n\" data-label=\"yield\"><strong>{}</strong><br><small>{}</small></td>{}{}{rest}</tr>\n",
             if limited == 2 { "Both" } else { "All" },
             badge(of.judged.map(|judged| judged.verdict)),
             self.gauge.svg(Some(of.value), Some(of.ends), target, None),
             escaped(&of.rejects.yield_text().unwrap_or_else(|| "unknown".to_owned())),
             interval(of.ends),
-            target.map(yielded).unwrap_or_default(),
-            escaped(&of.rejects.all_ppm().unwrap_or_default()),
+            labelled("target", &target.map(yielded).unwrap_or_default()),
+            labelled("rejects", &of.rejects.all_ppm().map(|ppm| format!("{} ppm", escaped(&ppm))).unwrap_or_default()),
         )
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::document::number::{plain, significant};
 use crate::document::svg::escaped;
+use crate::html::part::Part;
 use crate::html::what_if::{Tried, Wanted, WhatIf};
 
 /// Figures of a card, by the names under which the page's script fills them in.
@@ -11,6 +12,10 @@ const FIGURES: [&str; 8] = ["mean", "sigma", "skewness", "kurtosis", "yield", "p
 pub(super) fn section(of: &WhatIf) -> String {
     let characteristics = || of.characteristics().iter().enumerate();
     let cards: String = characteristics().map(card).collect();
+    let line = |(index, one): (usize, &Wanted)| {
+        format!("<p data-line=\"{index}\"><strong>{}</strong> <span></span></p>\n", escaped(&one.name))
+    };
+    let strip: String = characteristics().filter(|(_, one)| one.why.is_none()).map(line).collect();
     let cost = of.paid().map(|paid| {
         let paid = paid.map_or("no process holds these tolerances".to_owned(), |paid| significant(paid, 6));
         let paid = escaped(&paid);
@@ -31,8 +36,8 @@ pub(super) fn section(of: &WhatIf) -> String {
         r#"<section aria-labelledby="what-if-title" id="what-if" hidden>
 <h2 id="what-if-title">What if</h2>
 <p>Try other tolerances and means. Results update from the fitted surface; run sensitol again to confirm. <span class="print-only">As set when printed.</span></p>
-<div class="cards" aria-live="polite">
-{cards}</div>
+<div class="strip" tabindex="0" role="region" aria-label="Results as set" aria-live="polite">
+{strip}</div>
 {cost}<p class="tools"><label>Shares of the variance of <select id="share-of">
 {choices}</select></label>
 <button type="button" id="reset">Back to the study</button>
@@ -43,6 +48,8 @@ pub(super) fn section(of: &WhatIf) -> String {
 {rows}</tbody>
 </table></div>
 <p class="note">Bars: linear part, curvature, and half of each interaction of the dimension. All other sections show the study as analysed.</p>
+<div class="cards">
+{cards}</div>
 {copied}</section>
 "#
     )
@@ -55,13 +62,8 @@ const COPIED: &str = "<details><summary>The changed section [dimensions]</summar
 /// Writes the section with the reason why nothing can be changed.
 pub(super) fn impossible(why: &str) -> String {
     let why = escaped(why);
-    format!(
-        r#"<section aria-labelledby="what-if-title">
-<h2 id="what-if-title">What if</h2>
-<p>Nothing can be changed in this page: {why}. Change the study and analyze it again.</p>
-</section>
-"#
-    )
+    let said = format!("<p>Nothing can be changed in this page: {why}. Change the study and analyze it again.</p>\n");
+    Part::new("what-if-title", "What if", said).on_screen()
 }
 
 /// Writes the card of a characteristic, as analysed and as set. The page's script fills in the figures.

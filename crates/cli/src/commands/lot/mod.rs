@@ -8,6 +8,7 @@ use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::{Look, json};
 use crate::own_file::Content;
+use crate::page_files::PageFiles;
 use crate::running::{Clock, confirmed, externals, kept, on_threads};
 use crate::table::{bytes, failed, text as text_of};
 use crate::{interrupt, study};
@@ -30,7 +31,7 @@ pub(crate) fn run(asked: &CompareLotArgs, look: Look) -> Result<Exit, Failure> {
     asked.lot.iter().for_each(|path| files.reads(path, "a table of the lot"));
     let destination = files.output(&asked.output)?;
     let folder = files.folder(asked.csv.as_deref(), &TABLES.map(|name| format!("{name}.csv")))?;
-    let page = files.file(asked.html.as_deref())?;
+    let page = PageFiles::open(&mut files, asked.html.as_deref(), asked.pdf.as_deref())?;
     asked.update.as_deref().map_or(Ok(()), |path| stays_beside(path, &asked.study.study, &study))?;
     let written = files.file_of(asked.update.as_deref(), &Content::Study)?;
     let tables = asked.lot.iter().map(|path| table(path, &study, look)).collect::<Result<Vec<_>, _>>()?;
@@ -49,7 +50,7 @@ pub(crate) fn run(asked: &CompareLotArgs, look: Look) -> Result<Exit, Failure> {
     let done =
         destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
     let done = done.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &TABLES))));
-    let done = done.and(page.map_or(Ok(()), |page| page.write(&lot_html(&report))));
+    let done = done.and(page.write(|| lot_html(&report)));
     look.warn_all(&study.warnings);
     clock.stopped(&comparison.run, (comparison.run.evaluations, None), Counted::Evaluations, look);
     done?;

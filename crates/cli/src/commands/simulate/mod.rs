@@ -8,6 +8,7 @@ use crate::csv::CsvFolder;
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::{Destination, Look, json};
+use crate::page_files::PageFiles;
 use crate::running::{Clock, checked, confirmed, kept};
 use crate::sampling::{sampling, surrogate};
 use crate::{interrupt, study};
@@ -81,7 +82,7 @@ pub(super) struct Reported<'a> {
     destination: Destination,
     folder: Option<CsvFolder>,
     tables: &'static [&'static str],
-    page: Option<Destination>,
+    page: PageFiles,
 }
 
 impl<'a> Reported<'a> {
@@ -91,7 +92,7 @@ impl<'a> Reported<'a> {
         let tables = if indices { &TABLES[..] } else { &TABLES[..2] };
         let names: Vec<String> = tables.iter().map(|name| format!("{name}.csv")).collect();
         let folder = files.folder(asked.csv.as_deref(), &names)?;
-        let page = files.file(asked.html.as_deref())?;
+        let page = PageFiles::open(files, asked.html.as_deref(), asked.pdf.as_deref())?;
         Ok(Self { asked, destination, folder, tables, page })
     }
 }
@@ -109,7 +110,7 @@ pub(super) fn report(
     let text = if to.asked.output.json { json(&report) } else { text(&document, look.style(&to.asked.output)) };
     let written = to.destination.write(&text);
     let written = written.and(to.folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, to.tables))));
-    let written = written.and(to.page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
+    let written = written.and(to.page.write(|| simulate_html(&report)));
     look.tell_all(&report.warnings);
     clock.stopped(&simulation.run, (simulation.samples, None), Counted::Points, look);
     if interrupt::stopped() {
