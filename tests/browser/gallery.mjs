@@ -9,16 +9,16 @@ import { Browser } from "./chromium.mjs";
 const root = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
 /// Largest picture, and all together, in bytes.
 const LARGEST = 40_000, ALL = 600_000;
-/// Name of the picture, the command, and the element of the page.
+/// Name of the picture, the command, the element of the page, and the scale where it is another one.
 const PICTURES = [
   ["yield", ["analyze", "examples/shaft-and-bore/study.toml"], ".kc figure"],
   ["verdict", ["analyze", "examples/first-study/study.toml"], "section.verdict"],
   ["contributions", ["analyze", "examples/stacked-blocks/study.toml"], "table.drivers"],
   ["chain", ["analyze", "examples/spacer-stack/study.toml"], "svg.chain.wide"],
   ["tails", ["analyze", "examples/two-suppliers/study.toml"], ".tails"],
-  ["shift", ["analyze", "examples/fit-and-stack/study.toml"], "h3 + table.spans"],
-  ["interactions", ["analyze", "examples/connecting-rod/study.toml"], "table.map"],
-  ["assembly", ["analyze", "examples/shaft-two-bores/study.toml"], "#picture svg"],
+  ["shift", ["analyze", "examples/first-study/study.toml"], "table.spans ~ table.spans"],
+  ["interactions", ["analyze", "examples/connecting-rod/study.toml"], "table.map", 0.75],
+  ["assembly", ["analyze", "examples/shaft-two-bores/study.toml"], "#picture svg", 0.75],
   ["sweep", ["sweep", "examples/stacked-blocks/study.toml", "--over", "th=15:19:9"], "figure svg.wide"],
   ["tolerances", ["allocate", "examples/shaft-and-housing/study.toml"], "table.pareto"],
   ["front", ["allocate", "examples/shaft-and-housing/study.toml", "--pareto", "6"], "figure svg.wide"],
@@ -26,7 +26,7 @@ const PICTURES = [
   ["lot", ["compare-lot", "examples/housing-lot/study.toml", "examples/housing-lot/parts.csv", "examples/housing-lot/assemblies.csv"], "figure svg.wide"],
   ["methods", ["compare", "examples/stacked-blocks/study.toml", "--samples", "20000", "--budget", "300"], "figure svg.wide"],
 ];
-/// Margin around the element, in pixels of the page, and the scale of the picture.
+/// Margin around the element, in pixels of the page, and the scale of a picture.
 const MARGIN = 8, SCALE = 0.8;
 
 const [sensitol, ...names] = process.argv.slice(2);
@@ -35,7 +35,7 @@ mkdirSync(target, { recursive: true });
 const folder = mkdtempSync(join(tmpdir(), "sensitol-gallery-"));
 const browser = await Browser.start();
 let total = 0;
-for (const [name, command, element] of PICTURES.filter(([name]) => names.length === 0 || names.includes(name))) {
+for (const [name, command, element, scale = SCALE] of PICTURES.filter(([name]) => names.length === 0 || names.includes(name))) {
   const file = join(folder, `${name}.html`);
   execFileSync(sensitol, [...command, "--html", file, "-q"], { cwd: root, stdio: ["ignore", "ignore", "inherit"] });
   const page = await browser.open(file);
@@ -44,7 +44,7 @@ for (const [name, command, element] of PICTURES.filter(([name]) => names.length 
     const { left, top, width, height } = document.querySelector(${JSON.stringify(element)}).getBoundingClientRect();
     return { left, top: top + scrollY, width, height };
   })()`);
-  const clip = { x: box.left - MARGIN, y: box.top - MARGIN, width: box.width + 2 * MARGIN, height: box.height + 2 * MARGIN, scale: SCALE };
+  const clip = { x: box.left - MARGIN, y: box.top - MARGIN, width: box.width + 2 * MARGIN, height: box.height + 2 * MARGIN, scale };
   const { data } = await page.send("Page.captureScreenshot", { format: "png", captureBeyondViewport: true, clip });
   const picture = Buffer.from(data, "base64");
   if (picture.length > LARGEST) throw new Error(`${name}: ${picture.length} bytes, at most ${LARGEST}`);

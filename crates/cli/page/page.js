@@ -422,11 +422,11 @@ const page = (() => {
     const unit = one.unit ? `, ${esc(one.unit)}` : "";
     return `<div class="ver"><span class="soft">yield</span><span></span><span class="huge${value.length > 11 ? " long" : ""}" id="yield">${esc(value || "no limits")}</span>`
       + `<span>${one.verdict ? `<span class="st ${one.verdict}">${MARK[one.verdict]}${WORD[one.verdict]}</span>` : ""}${one.target_yield !== null ? `<br><span class="soft">target ${esc(Number((100 * one.target_yield).toPrecision(12)))} %</span>` : ""}</span>`
-      + `<span class="soft">${esc(row.interval ?? "")}</span><span class="soft">${esc(row.rejects ?? "")}</span></div>${result.densities[i]}`
+      + `<span class="soft">${esc(row.interval ?? "")}</span><span class="soft">${esc(row.rejects ?? "").replaceAll(", ", "<br>")}</span></div>${result.densities[i]}`
       + `<dl class="nums">${[["Cpk", row.Cpk], [`mean${unit}`, row.mean], [`σ${unit}`, row.sigma], ["worst case", row.worst]].map(([title, text]) => `<div><dt>${title}</dt><dd>${esc(text ?? "?")}</dd></div>`).join("")}</dl>`
       + warnings.map((warning) => `<p class="warn">${esc(warning.message)} <code>${esc(warning.code)}</code></p>`).join("")
       + drives(one)
-      + `<p class="foot">${result.report.evaluations} evaluations, ${Math.round(result.took)} ms, ${served === null ? "all in this page. Nothing is sent anywhere" : "by sensitol on this machine"}.</p>`;
+      + `<p class="foot">${result.report.evaluations} evaluation${result.report.evaluations === 1 ? "" : "s"}, ${Math.round(result.took)} ms, ${served === null ? "all in this page. Nothing is sent anywhere" : "by sensitol on this machine"}.</p>`;
   };
   $("kc-tabs").onclick = (event) => { const chosen = event.target.closest("button"); if (chosen) choose(+chosen.dataset.i); };
 

@@ -97,7 +97,10 @@ fn prints_of_others_stay() {
 fn no_browser_is_one_error() {
     let folder = folder();
     let (code, said) = run(folder.path(), "nowhere", "analyze gap.toml --html page.html --pdf print.pdf");
-    assert!(code == 2 && said.contains("which SENSITOL_CHROMIUM names") && said.contains("print it from a browser"), "{said}");
+    assert!(
+        code == 2 && said.contains("which SENSITOL_CHROMIUM names") && said.contains("print it from a browser"),
+        "{said}"
+    );
     let output = sensitol(&["analyze", "gap.toml", "--pdf", "print.pdf"])
         .current_dir(folder.path())
         .env_remove("SENSITOL_CHROMIUM")

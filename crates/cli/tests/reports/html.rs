@@ -587,7 +587,9 @@ fn a_page_without_title_names_the_file() {
     assert!(output.status.success(), "{output:?}");
     let page = std::fs::read_to_string(path("page.html")).unwrap();
     assert!(page.contains("<h1>Tolerance report: lid &amp; box.toml</h1>"), "{page}");
-    assert!(page.contains("<dt>Date</dt><dd>2026-11-28</dd>") && page.contains("<dt>Study</dt><dd>lid &amp; box.toml</dd>"));
+    assert!(
+        page.contains("<dt>Date</dt><dd>2026-11-28</dd>") && page.contains("<dt>Study</dt><dd>lid &amp; box.toml</dd>")
+    );
 }
 
 /// Returns the cells of every row of the contributions, without markup.

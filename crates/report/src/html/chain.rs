@@ -53,8 +53,8 @@ fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], clas
     let band = |of: &DimensionReport| of.tolerance.map(band).unwrap_or_default();
     let notes = longest(&mut links.iter().map(|(of, _)| band(of)));
     let values = longest(&mut links.iter().map(|(of, _)| plain(of.nominal)));
-    // A value at the middle of a short link at the end of the scale must not reach into the column of bands.
-    let room = LETTER * (notes as f64 + 0.5 * values as f64 + 1.0);
+    // A value beside a short link at the end of the scale must not reach into the column of bands.
+    let room = LETTER * (notes as f64 + values as f64 + 2.0);
     let (left, right) = if width > 500.0 { (110.0, room.max(110.0)) } else { (84.0, room.max(74.0)) };
     let mut at = 0.0;
     let ends: Vec<[f64; 2]> = (links.iter())
@@ -87,12 +87,11 @@ fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], clas
         let _ = writeln!(svg, "<path class=\"{class}\" d=\"M{a:.1} {y}H{b:.1}m{head} -4l{} 4l{head} 4\"/>", -head);
         let _ = writeln!(svg, "<path class=\"axis\" d=\"M{b:.1} {y}V{}\"/>", y + ROW);
         let _ = writeln!(svg, "<text class=\"name\" x=\"0\" y=\"{:.1}\">{}</text>", y + 4.0, escaped(&short(name)));
-        let _ = writeln!(
-            svg,
-            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{value}</text>",
-            0.5 * (a + b),
-            y - 4.0
-        );
+        // The value of a short arrow stands beside it, where no other line crosses it.
+        let is_short = (b - a).abs() < LETTER * value.chars().count() as f64;
+        let (at, down, anchor) =
+            if is_short { (a.max(b) + LETTER, y + 4.0, "start") } else { (0.5 * (a + b), y - 4.0, "middle") };
+        let _ = writeln!(svg, "<text x=\"{at:.1}\" y=\"{down:.1}\" text-anchor=\"{anchor}\">{value}</text>");
         let _ = writeln!(svg, "<text x=\"{width}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>", y + 4.0, escaped(&note));
     };
     for (row, ((of, _), ends)) in links.iter().zip(&ends).enumerate() {

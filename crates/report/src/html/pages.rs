@@ -266,6 +266,7 @@ fn headed(section: &mut Section) {
         Element::Table(table) => Some(match table.name {
             "tolerances" => "Tolerances",
             "requirements" => "What is required",
+            "front" => "Margin and confirmation",
             _ => "Before and after",
         }),
         Element::Chart(Chart::Plot(_)) => Some("Cost against what is required"),
