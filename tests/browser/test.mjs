@@ -9,7 +9,7 @@ import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
 import { pictures } from "./assembly.mjs";
-import { Browser } from "./chromium.mjs";
+import { Browser, installed } from "./chromium.mjs";
 import { asGrey, changes, contrast, luminances } from "./grey.mjs";
 import { FAULTS, MARGINS, SHEETS, filled } from "./paper.mjs";
 
@@ -46,10 +46,14 @@ const OVERLAPS = `(() => {
 })()`;
 const drawn = "[...document.querySelectorAll('svg.density')].filter((svg) => svg.getBoundingClientRect().width > 0).length";
 
+/// Most pages of a print.
+const MOST = 5;
+
 /// On this sheet no page but the last is nearly empty, nothing is cut off, and no text of a chart is tiny.
 const prints = async (page, sheet, what) => {
   const full = filled(await page.pdf(SHEETS[sheet]));
   assert.ok(full.length > 0 && full.at(-1) > 0, `${what} on ${sheet}`);
+  assert.ok(full.length <= MOST, `${what} on ${sheet}: ${full.length} pages, at most ${MOST}`);
   full.slice(0, -1).forEach((part, i) => assert.ok(part > 1 / 3, `${what} on ${sheet}: page ${i + 1} of ${full.length} is ${(100 * part).toFixed(0)} % full`));
   await page.asPaper(96 * SHEETS[sheet][0] - 2 * MARGINS[1] * 96 / 72);
   assert.deepEqual(await page.evaluate(FAULTS), [], `${what} on ${sheet}`);
@@ -377,6 +381,51 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
   const below = await page.evaluate("(() => { const { top, height } = document.querySelector('svg.density.wide').getBoundingClientRect(); return top + height / 3; })()");
   assert.ok(below <= 900, `the density begins at ${below}`);
   await page.close();
+});
+
+test("on a phone the verdict's yield is whole, and one line of the what-if stays on the screen", async () => {
+  const page = await browser.open(report("analyze", "examples/stacked-blocks/study.toml", "phone"), { width: 390, height: 844 });
+  const within = await page.evaluate("[...document.querySelectorAll('.gauges strong, .gauges .st, .gauges td.n')].every((one) => { const { left, right } = one.getBoundingClientRect(); return left >= 0 && right <= 390; })");
+  assert.ok(within, "a figure of the verdict is cut off");
+  const strip = () => page.evaluate("document.querySelector('.strip').innerText.trim()");
+  assert.match(await strip(), /^gap 99\.\d+ %, Cpk \d\.\d{3}$/);
+  await page.evaluate("document.querySelector('.tries').scrollIntoView()");
+  await page.evaluate(`(${SET})(4, "factor", 0.9)`);
+  await page.evaluate(FRAME);
+  assert.match(await strip(), /^gap 99\.\d+ % → \d+\.\d+ %, Cpk \d\.\d{3} → \d\.\d{3}$/);
+  const { top, bottom, height } = JSON.parse(await page.evaluate("JSON.stringify(document.querySelector('.strip').getBoundingClientRect())"));
+  assert.ok(height <= 844 / 4 && top >= 0 && bottom <= 844.5, `the line lies at ${top} to ${bottom}`);
+  quiet(page);
+  await page.close();
+});
+
+test("everything behind the first screen is folded, and opens", async () => {
+  const page = await browser.open(report("analyze", "examples/first-study/study.toml", "folds"));
+  const seen = (what) => page.evaluate(`document.querySelector("${what}").getBoundingClientRect().height > 0 && document.querySelector("${what}").checkVisibility({ contentVisibilityAuto: true })`);
+  assert.equal(await seen(".tails"), false);
+  await page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })");
+  for (const what of [".tails", ".inputs", ".facts", ".terms"]) assert.equal(await seen(what), true, what);
+  assert.deepEqual(await page.evaluate(OVERLAPS), []);
+  if (process.env.AXE) {
+    await page.evaluate(readFileSync(process.env.AXE, "utf8"));
+    const found = await page.evaluate("axe.run(document, { resultTypes: ['violations'] }).then((all) => all.violations.map((one) => `${one.id}: ${one.nodes.map((node) => node.html.slice(0, 160)).slice(0, 3).join(' | ')}`))");
+    assert.deepEqual(found, []);
+  }
+  quiet(page);
+  await page.close();
+});
+
+test("--pdf prints by this browser, on the paper of the locale", () => {
+  const file = join(folder, "print.pdf");
+  for (const [locale, sheet] of [["de_DE.UTF-8", "A4"], ["en_US.UTF-8", "Letter"]]) {
+    const env = { ...process.env, LC_ALL: locale, SENSITOL_CHROMIUM: installed() };
+    execFileSync(sensitol, ["analyze", "examples/first-study/study.toml", "--pdf", file, "-q"], { cwd: root, env, stdio: ["ignore", "ignore", "inherit"] });
+    const pdf = readFileSync(file), full = filled(pdf);
+    assert.ok(full.length > 0 && full.length <= MOST, `${sheet}: ${full.length} pages`);
+    const box = pdf.toString("latin1").match(/MediaBox \[0 0 (\S+) (\S+)\]/).slice(1).map(Number);
+    // Chromium rounds to pixels.
+    SHEETS[sheet].forEach((side, i) => assert.ok(Math.abs(72 * side - box[i]) < 1, `${sheet}: ${box}`));
+  }
 });
 
 test("a picture of an assembly turns by keys, and a slider moves its parts", async () => {

@@ -170,6 +170,8 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         let rest = format!("and {} more with {} % together; -v shows all", rest.len(), percent(together));
         let shown = |value: Option<f64>, text: fn(f64) -> String| Cell::number(value, text);
         let unknown = || Cell::text(UNKNOWN.to_owned());
+        // A choice among parts leaves no slopes. Empty columns would push the last one into a second block.
+        let has_slopes = all.iter().filter_map(Contributor::alone).any(|(row, _)| row.first.is_some());
         Columns::default()
             .named("", "contributor", |one: &&Contributor<'_>| Cell::name(one.name))
             .shown("mean", |one| {
@@ -181,12 +183,14 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
                 Cell::text(format!("{}{unit}", dimension.tolerance()))
             })
             .shown("sigma", move |one| shown(one.alone().map(|row| row.1.sigma), |sigma| significant(sigma, 3)))
-            .shown("sensitivity", |one| {
+            .shown_if(has_slopes, "sensitivity", |one| {
                 let Some((row, _)) = one.alone() else { return Cell::text(UNKNOWN.to_owned()) };
                 let rounding = row.rounding.map(|rounding| rounding[0]);
                 Cell::both(Value::Number(row.first), derivative(row.first, rounding, 4))
             })
-            .shown("effect", move |one| shown(one.alone().and_then(effect), |effect| significant(effect, 3)))
+            .shown_if(has_slopes, "effect", move |one| {
+                shown(one.alone().and_then(effect), |effect| significant(effect, 3))
+            })
             .shown("contrib. %", move |one| shown(one.part(), percent))
             // One more column exceeds 80 columns; the details have it.
             .shown_if(self.is_of_model() && self.has_totals(), "total %", move |one| shown(one.total(), percent))

@@ -50,20 +50,22 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
             String::new()
         }
     };
-    let (mut screens, mut details) = (String::new(), String::new());
-    for (index, (one, section)) in all.iter().zip(std::mem::take(&mut document.sections)).enumerate() {
-        let screen = screen(report, index, one, section);
-        screens += &screen.first;
-        details += &screen.details;
-    }
-    if let Some(left @ 1..) = all.len().checked_sub(PRINTED) {
-        let sections = plural(left, "more characteristic is", "more characteristics are");
-        screens += &format!("<p class=\"note print-only\">The sections of {sections} in the page itself.</p>\n");
-    }
     let (assembly, picture) = match picture::picture(report) {
         Some(picture) => (picture.section, Some(picture.data)),
         None => (String::new(), None),
     };
+    // A picture takes the room of a section.
+    let printed = PRINTED - usize::from(picture.is_some());
+    let (mut screens, mut details) = (String::new(), String::new());
+    for (index, (one, section)) in all.iter().zip(std::mem::take(&mut document.sections)).enumerate() {
+        let screen = screen(report, index, (one, section), index < printed);
+        screens += &screen.first;
+        details += &screen.details;
+    }
+    if let Some(left @ 1..) = all.len().checked_sub(printed) {
+        let sections = plural(left, "more characteristic is", "more characteristics are");
+        screens += &format!("<p class=\"note print-only\">The sections of {sections} in the page itself.</p>\n");
+    }
     match (possible, what_if.and_then(WhatIf::impossible)) {
         (Some(what_if), _) => screens += &tries::section(what_if),
         (None, Some(why)) => details += &tries::impossible(&why),

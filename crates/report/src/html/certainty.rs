@@ -21,6 +21,9 @@ pub(super) struct Row {
     beside: String,
 }
 
+/// Most rows that are printed: the five figures of three characteristics. More would take a page of their own.
+const PRINTED_ROWS: usize = 15;
+
 /// Headings of an analysis: value, error, second figure.
 pub(super) const ANALYSED: [&str; 3] = ["value", "estimated error", "points of the model say"];
 /// Headings of a simulation.
@@ -50,7 +53,8 @@ pub(super) fn section(rows: &[Row], titles: [&str; 3], words: &str) -> String {
         let _ = writeln!(text, "<tr>{first}<td>{figure}</td>{cells}</tr>");
     }
     text += &format!("</tbody></table></div>\n<p class=\"note\">{}</p>\n", escaped(words));
-    Part::new("sure", "How sure is this", text).folded()
+    let part = Part::new("sure", "How sure is this", text);
+    if rows.len() <= PRINTED_ROWS { part.folded() } else { part.on_screen() }
 }
 
 /// Rows of an analysis, beside the values by points of the model. Those of a simulation are preferred if there is one.

@@ -16,7 +16,7 @@ const OF_INPUTS: [&str; 3] = ["nominal", "tolerance", "unit"];
 /// Most characteristics whose details are printed. Paper of more would have more than five pages.
 const DETAILED: usize = 1;
 /// Most characteristics that are printed with density and contributions. The verdict has all of them.
-pub(super) const PRINTED: usize = 6;
+pub(super) const PRINTED: usize = 3;
 
 /// Section of a characteristic in two parts.
 pub(super) struct CharacteristicScreen {
@@ -37,12 +37,12 @@ struct Sorted {
     notes: Vec<String>,
 }
 
-/// Writes the section with this index.
+/// Writes the section with this index. Paper leaves out its first part unless `is_printed`.
 pub(super) fn screen(
     report: &Report,
     index: usize,
-    one: &CharacteristicAnalysis,
-    section: Section,
+    (one, section): (&CharacteristicAnalysis, Section),
+    is_printed: bool,
 ) -> CharacteristicScreen {
     let unit = section.unit.as_deref().map(|unit| format!(" <small>[{}]</small>", escaped(unit))).unwrap_or_default();
     let name = escaped(&section.name);
@@ -62,15 +62,15 @@ pub(super) fn screen(
     };
     let pareto = headed(SHARES, pareto::pareto(report, one));
     let chain = headed("Dimension chain", chain::chain(one, &report.dimensions));
-    let paper = if index < PRINTED { "" } else { " on-screen" };
+    let paper = if is_printed { "" } else { " on-screen" };
     let first = format!(
         "<section id=\"kc-{index}\" class=\"kc{paper}\" aria-labelledby=\"kc-title-{index}\">\n<h2 id=\"kc-title-{index}\">{name}{unit}</h2>\n\
          {remark}{figure}{pareto}{chain}</section>\n"
     );
     let body = sorted.details(report, one);
     let part = Part::new(format!("kc-details-{index}"), format!("{name}: tails, ranges, quantiles, slopes"), body);
-    let is_printed = report.analysis.characteristics.len() <= DETAILED;
-    CharacteristicScreen { first, details: if is_printed { part.folded() } else { part.on_screen() } }
+    let is_detailed = report.analysis.characteristics.len() <= DETAILED;
+    CharacteristicScreen { first, details: if is_detailed { part.folded() } else { part.on_screen() } }
 }
 
 /// Writes markup below a heading, or nothing if there is none.

@@ -63,7 +63,7 @@ pub(super) fn section(report: &Report) -> String {
 }
 
 fn folded(title: &str, inner: &str) -> String {
-    format!("<details class=\"fold\"><summary>{title}</summary>\n{inner}</details>\n")
+    format!("<details class=\"fold on-screen\"><summary>{title}</summary>\n{inner}</details>\n")
 }
 
 /// Returns the greatest share of a dimension in any characteristic, or None if all are unknown.

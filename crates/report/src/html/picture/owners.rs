@@ -87,7 +87,7 @@ pub(super) fn tables(scene: &AssemblyScene, pictured: &[PicturedCharacteristic])
         );
     }
     format!(
-        "<details class=\"fold\"><summary>{} by contribution, {} by freedoms</summary>\n<div class=\"wide\" tabindex=\"0\"><table>\
+        "<details class=\"fold on-screen\"><summary>{} by contribution, {} by freedoms</summary>\n<div class=\"wide\" tabindex=\"0\"><table>\
          <thead><tr><th scope=\"col\">feature or joint</th><th scope=\"col\"></th>{heads}</tr></thead><tbody>\n{rows}</tbody></table></div>\n\
          <div class=\"wide\" tabindex=\"0\"><table><thead><tr><th scope=\"col\">joint</th><th scope=\"col\">kind</th><th scope=\"col\">between</th>\
          <th scope=\"col\" class=\"n\">takes</th><th scope=\"col\">freedoms</th></tr></thead><tbody>\n{joints}</tbody></table></div>\n</details>\n",
