@@ -1,4 +1,4 @@
-// The pictures of docs/gallery.md, cut out of the examples' own pages: `node tests/browser/gallery.mjs SENSITOL [NAME..]`.
+// The picture of README.md and those of docs/gallery.md, cut out of the examples' own pages: `node tests/browser/gallery.mjs SENSITOL [NAME..]`.
 import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -26,11 +26,13 @@ const PICTURES = [
   ["lot", ["compare-lot", "examples/housing-lot/study.toml", "examples/housing-lot/parts.csv", "examples/housing-lot/assemblies.csv"], "figure svg.wide"],
   ["methods", ["compare", "examples/stacked-blocks/study.toml", "--samples", "20000", "--budget", "300"], "figure svg.wide"],
 ];
+/// First screen of a page, for README.md: its file, the study, and the largest size in bytes.
+const FIRST = ["report", "examples/first-study/study.toml", 150_000];
 /// Margin around the element, in pixels of the page, and the scale of a picture.
 const MARGIN = 8, SCALE = 0.8;
 
 const [sensitol, ...names] = process.argv.slice(2);
-const target = join(root, "docs", "images", "gallery");
+const images = join(root, "docs", "images"), target = join(images, "gallery");
 mkdirSync(target, { recursive: true });
 const folder = mkdtempSync(join(tmpdir(), "sensitol-gallery-"));
 const browser = await Browser.start();
@@ -50,6 +52,17 @@ for (const [name, command, element, scale = SCALE] of PICTURES.filter(([name]) =
   if (picture.length > LARGEST) throw new Error(`${name}: ${picture.length} bytes, at most ${LARGEST}`);
   writeFileSync(join(target, `${name}.png`), picture);
   total += picture.length;
+  console.log(`${name}: ${picture.length} bytes`);
+  await page.close();
+}
+if (names.length === 0 || names.includes(FIRST[0])) {
+  const [name, study, largest] = FIRST, file = join(folder, "first.html");
+  execFileSync(sensitol, ["analyze", study, "--html", file, "-q"], { cwd: root, stdio: ["ignore", "ignore", "inherit"] });
+  const page = await browser.open(file, { width: 1130 });
+  const height = await page.evaluate("Math.ceil(document.querySelector('.drivers').getBoundingClientRect().bottom)");
+  const picture = await page.screenshot(height + MARGIN);
+  if (picture.length > largest) throw new Error(`${name}: ${picture.length} bytes, at most ${largest}`);
+  writeFileSync(join(images, `${name}.png`), picture);
   console.log(`${name}: ${picture.length} bytes`);
   await page.close();
 }
