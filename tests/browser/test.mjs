@@ -273,6 +273,9 @@ test("pages print on A4 and Letter: no page nearly empty, nothing cut off, no ti
   }
 });
 
+// Maps are printed for one characteristic alone; here they are for several.
+const PRINTS = "document.querySelectorAll('.on-screen').forEach((one) => one.classList.remove('on-screen'))";
+
 test("without colour, on paper, verdicts, limits and what was not evaluated can be told apart", async () => {
   const study = join(folder, "grey.toml");
   // Of a normal law 99 % lie within 2.576 sigmas: 2000 samples do not say whether 99 % do.
@@ -300,6 +303,7 @@ open = { formula = "2*a", lower = 14.848, upper = 25.152, target_yield = 0.99 }
   await page.close();
 
   const mapped = await browser.open(report("analyze", "examples/bearing-housing/study.toml", "grey-map"));
+  await mapped.evaluate(PRINTS);
   await asGrey(mapped, 700);
   // A limit against the density and the part beyond it, three pixels to either side of it, in the middle of the picture.
   const drawing = await luminances(mapped, "svg.density");
@@ -326,6 +330,7 @@ open = { formula = "2*a", lower = 14.848, upper = 25.152, target_yield = 0.99 }
 
   // Hatching has lines. The map of a connecting rod has pairs that were not examined, in cells without a number.
   const pairs = await browser.open(report("analyze", "examples/connecting-rod/study.toml", "grey-pairs"));
+  await pairs.evaluate(PRINTS);
   await asGrey(pairs, 700);
   const hatched = await luminances(pairs, ".map td.hatched"), middle = hatched[Math.round(hatched.length / 2)];
   assert.ok(changes(middle) >= 6, `hatching changes ${changes(middle)} times`);
