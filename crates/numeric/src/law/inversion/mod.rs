@@ -2,6 +2,7 @@
 
 pub(in crate::law) mod complex;
 pub(in crate::law) mod contour;
+mod node_sums;
 pub(in crate::law) mod perturbed_form;
 pub(in crate::law) mod product_tree;
 pub(in crate::law) mod quadratic_form;

@@ -13,8 +13,9 @@ use crate::law::input;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::elementary::{Elementary, Exp};
+use crate::elementary::{Elementary, Exp, on_this_processor};
 use crate::law::inversion::complex::Complex;
+use crate::law::inversion::node_sums::{LogSums, Message, NodeFactors, Parabola, Phases};
 use crate::law::inversion::single_input::{Table, level, own_ends_weigh_nothing};
 use crate::law::polynomial::{Quartic, value};
 use crate::law::surface::Surface;
@@ -68,14 +69,6 @@ struct Tilted {
     values: Vec<f64>,
     /// Logarithms of weight, tilt and the branches below.
     logs: Vec<f64>,
-}
-
-/// Message `exp(constant + linear u + square u^2)`.
-#[derive(Clone, Copy)]
-struct Parabola {
-    constant: Complex,
-    linear: Complex,
-    square: Complex,
 }
 
 impl Tree {
@@ -189,12 +182,7 @@ impl Tree {
     /// Message of a closed branch.
     fn parabola(&self, place: usize, s: Complex) -> Parabola {
         let node = &self.nodes[place];
-        let zero = Parabola { constant: Complex::ZERO, linear: Complex::ZERO, square: Complex::ZERO };
-        let below = node.children.iter().map(|&child| self.parabola(child, s)).fold(zero, |sum, more| Parabola {
-            constant: sum.constant + more.constant,
-            linear: sum.linear + more.linear,
-            square: sum.square + more.square,
-        });
+        let below = self.closed_below(place, s);
         // E exp(l z + h z^2) = exp(l^2/(2 q))/sqrt(q) with q = 1 - 2 h and l = s c1 + below + s b u.
         let q = Complex::ONE - (s * node.part[2] + below.square) * 2.0;
         let (own, by_parent) = (s * node.part[1] + below.linear, s * node.product);
@@ -203,6 +191,12 @@ impl Tree {
             linear: own * by_parent / q,
             square: by_parent * by_parent / (q * 2.0),
         }
+    }
+
+    /// Sum of the exponents of the closed branches below a node, by the value of that node.
+    fn closed_below(&self, place: usize, s: Complex) -> Parabola {
+        let closed = self.nodes[place].children.iter().filter(|&&child| self.nodes[child].closed);
+        closed.map(|&child| self.parabola(child, s)).fold(Parabola::ZERO, |sum, more| sum + more)
     }
 
     /// `K` at a real tilt.
@@ -222,21 +216,17 @@ impl Tree {
                 continue;
             }
             let mut tilted = self.live(place, theta, top);
-            for &child in &node.children {
-                let logs: Vec<f64> = match self.nodes[child].closed {
-                    true => {
-                        let parabola = self.parabola(child, s);
-                        let at = |&u: &f64| parabola.constant.re + u * (parabola.linear.re + u * parabola.square.re);
-                        tilted.z.iter().map(at).collect()
-                    }
-                    false => {
-                        let slope = theta * self.nodes[child].product;
-                        tilted.z.iter().map(|&u| log_sum(&done[child].0, slope * u)).collect()
-                    }
-                };
-                tilted.logs.iter_mut().zip(logs).for_each(|(log, more)| *log += more);
+            let below = self.closed_below(place, s);
+            for (log, u) in tilted.logs.iter_mut().zip(&tilted.z) {
+                *log += below.constant.re + u * (below.linear.re + u * below.square.re);
             }
-            let log = log_sum(&tilted, 0.0);
+            for &child in node.children.iter().filter(|&&child| !self.nodes[child].closed) {
+                let slope = theta * self.nodes[child].product;
+                let slopes: Vec<f64> = tilted.z.iter().map(|u| slope * u).collect();
+                let more = log_sums(&done[child].0, &slopes);
+                tilted.logs.iter_mut().zip(more).for_each(|(log, more)| *log += more);
+            }
+            let log = log_sums(&tilted, &[0.0])[0];
             done.push((tilted, log));
         }
         done
@@ -289,7 +279,11 @@ impl Tree {
                         return None;
                     }
                     effort = effort.max(elements as f64 * points);
-                    Some(Message::new(own, &parent.z, theta, node.product, from, step))
+                    let slopes: Vec<f64> = parent.z.iter().map(|u| theta * node.product * u).collect();
+                    let slopes: Vec<[f64; 2]> =
+                        slopes.iter().copied().zip(log_sums(own, &slopes)).map(Into::into).collect();
+                    let turns: Vec<f64> = parent.z.iter().map(|u| node.product * u).collect();
+                    Some(Message::new((&own.z, &own.logs), &slopes, &turns, [from, step]))
                 }
             });
         }
@@ -304,81 +298,36 @@ impl Tree {
             return Some(effort);
         }
         let weights: Vec<f64> = done[root].0.logs.iter().map(|log| Exp::of(log - done[root].1)).collect();
-        let mut factors: Vec<Vec<Complex>> = done.iter().map(|(own, _)| vec![Complex::ONE; own.z.len()]).collect();
-        let mut sums = Vec::new();
+        let real: Vec<Parabola> =
+            (0..self.nodes.len()).map(|place| self.closed_below(place, Complex::from(theta))).collect();
+        let mut factors: Vec<NodeFactors> = done.iter().map(|(own, _)| NodeFactors::new(own.z.len())).collect();
+        let mut sums = NodeFactors::default();
         for (i, out) in out.iter_mut().enumerate() {
             let t = from + step * i as f64;
             let s = Complex::new(theta, t);
-            // From the leaves to the root: the own phase of every node times the messages of its children.
+            // From the leaves to the root: the own phase of every node and its closed branches, then the messages of its open ones.
             for (place, node) in self.nodes.iter().enumerate().filter(|(_, node)| !node.closed) {
                 let own = &done[place].0;
                 let mut factor = std::mem::take(&mut factors[place]);
-                factor.iter_mut().zip(&own.values).for_each(|(factor, g)| *factor = Complex::cis(t * g));
+                let closed = node.children.iter().any(|&child| self.nodes[child].closed);
+                let below = closed.then(|| self.closed_below(place, s) - real[place]);
+                on_this_processor(Phases { z: &own.z, values: &own.values, t, below, out: &mut factor });
                 for &child in &node.children {
-                    match &mut messages[child] {
-                        None => {
-                            let (now, real) = (self.parabola(child, s), self.parabola(child, Complex::from(theta)));
-                            let (a, b, c) =
-                                (now.constant - real.constant, now.linear - real.linear, now.square - real.square);
-                            let at = |u: f64| (a + (b + c * u) * u).exp();
-                            factor.iter_mut().zip(&own.z).for_each(|(factor, &u)| *factor *= at(u));
-                        }
-                        Some(message) => {
-                            message.next(&factors[child], &mut sums);
-                            factor.iter_mut().zip(&sums).for_each(|(factor, sum)| *factor *= *sum);
-                        }
+                    if let Some(message) = &mut messages[child] {
+                        message.next(&factors[child], &mut sums);
+                        factor.multiply(&sums);
                     }
                 }
                 factors[place] = factor;
             }
-            let sum = factors[root].iter().zip(&weights).fold(Complex::ZERO, |sum, (factor, &w)| sum + *factor * w);
-            *out *= sum;
+            *out *= factors[root].weighed(&weights);
         }
         Some(effort)
     }
 }
 
-/// `log sum exp(logs + slope z)`.
-fn log_sum(tilted: &Tilted, slope: f64) -> f64 {
-    let at = |(log, z): (&f64, &f64)| log + slope * z;
-    let both = || tilted.logs.iter().zip(&tilted.z).map(at);
-    let most = both().fold(f64::NEG_INFINITY, f64::max);
-    most + libm::log(both().map(|e| Exp::of(e - most)).sum::<f64>())
-}
-
-/// Message as a table: for every node of the parent the weights of the own nodes, which sum to 1, and their rotation to the next point.
-struct Message {
-    now: Vec<Complex>,
-    turn: Vec<Complex>,
-    own: usize,
-}
-
-impl Message {
-    fn new(own: &Tilted, parent: &[f64], theta: f64, product: f64, from: f64, step: f64) -> Self {
-        let (mut now, mut turn) = (Vec::new(), Vec::new());
-        for &u in parent {
-            let slope = theta * product * u;
-            let log = log_sum(own, slope);
-            for (z, own) in own.z.iter().zip(&own.logs) {
-                let phase = product * u * z;
-                now.push(Complex::cis(from * phase) * Exp::of(own + slope * z - log));
-                turn.push(Complex::cis(step * phase));
-            }
-        }
-        Self { now, turn, own: own.z.len() }
-    }
-
-    /// Writes the message at every node of the parent and advances to the next point.
-    fn next(&mut self, factors: &[Complex], out: &mut Vec<Complex>) {
-        out.clear();
-        let rows = self.now.chunks_exact_mut(self.own.max(1)).zip(self.turn.chunks_exact(self.own.max(1)));
-        for (now, turn) in rows {
-            let mut sum = Complex::ZERO;
-            for ((now, turn), factor) in now.iter_mut().zip(turn).zip(factors) {
-                sum += *now * *factor;
-                *now *= *turn;
-            }
-            out.push(sum);
-        }
-    }
+/// `log sum exp(logs + slope z)` for each slope.
+fn log_sums(tilted: &Tilted, slopes: &[f64]) -> Vec<f64> {
+    let sums = on_this_processor(LogSums { z: &tilted.z, logs: &tilted.logs, slopes });
+    sums.into_iter().map(|[most, sum]| most + libm::log(sum)).collect()
 }
