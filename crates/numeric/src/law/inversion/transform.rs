@@ -175,20 +175,22 @@ impl Transform {
     fn reach(&self) -> [f64; 2] {
         /// Factor from one tilt of the search to the next.
         const GROWTH: f64 = 1.25;
+        /// First tilt of the search, times sigma.
+        const FIRST: f64 = 0.02;
         let [low, high] = self.forms.domain();
+        if self.is_closed() {
+            return [low, high];
+        }
         let at_mean = 1.0 / self.sigma;
         let bears = |theta: f64| {
             self.singles.iter().all(|single| single.bears(theta, at_mean))
                 && self.perturbed.iter().all(|form| form.bears(theta))
                 && self.trees.iter().all(|tree| tree.bears(theta, at_mean))
         };
+        let tilts: Vec<f64> = std::iter::successors(Some(FIRST), |t| (*t < FARTHEST).then_some(t * GROWTH)).collect();
         let far = |sign: f64| {
-            let unbounded = self.is_closed();
-            let mut t = 0.02;
-            while !unbounded && t < FARTHEST && bears(sign * t * GROWTH / self.sigma) {
-                t *= GROWTH;
-            }
-            if unbounded || t >= FARTHEST { f64::INFINITY } else { t / self.sigma }
+            let borne = leading(tilts.len() - 1, |place| bears(sign * tilts[place + 1] / self.sigma));
+            if tilts[borne] >= FARTHEST { f64::INFINITY } else { tilts[borne] / self.sigma }
         };
         [low.max(-far(-1.0)), high.min(far(1.0))]
     }
@@ -246,6 +248,27 @@ impl Transform {
     }
 }
 
+/// Number of the first places at which a condition holds, of those before `count`. From some place on it must not hold.
+///
+/// Cost: about twice the binary logarithm of the result.
+fn leading(count: usize, holds: impl Fn(usize) -> bool) -> usize {
+    let (mut low, mut high) = (0, count);
+    // Double the number as long as the condition holds, then halve the interval.
+    while low < high {
+        let next = (2 * low + 1).min(high);
+        if !holds(next - 1) {
+            high = next - 1;
+            break;
+        }
+        low = next;
+    }
+    while low < high {
+        let middle = (low + high).div_ceil(2);
+        if holds(middle - 1) { low = middle } else { high = middle - 1 }
+    }
+    low
+}
+
 /// Kinds of components that may be summed over nodes, in addition to closed forms. Each includes the ones before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::law) enum Summed {
@@ -255,4 +278,25 @@ pub(in crate::law) enum Summed {
     Perturbed,
     /// Trees of products.
     Trees,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every number of leading places up to 60 is found as by trying one place after the other, in at most two binary logarithms.
+    #[test]
+    fn leading_places_are_counted() {
+        for count in 0..60 {
+            for end in 0..=count {
+                let tried = std::cell::Cell::new(0);
+                let holds = |place: usize| {
+                    tried.set(tried.get() + 1);
+                    place < end
+                };
+                assert_eq!(leading(count, holds), end, "{count} {end}");
+                assert!(tried.get() <= 12, "{count} {end}: {}", tried.get());
+            }
+        }
+    }
 }
