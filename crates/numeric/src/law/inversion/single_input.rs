@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::elementary::{Elementary, Exp, Work, on_this_processor};
 use crate::law::input::Input;
 use crate::law::inversion::complex::Complex;
-use crate::law::polynomial::{Quartic, value};
+use crate::law::polynomial::{Quartic, derivative, roots, value};
 
 /// Negative logarithm of the least weight under a tilt, relative to the largest. Nodes with less weight are left out.
 pub(in crate::law) const LEAST: f64 = 46.0;
@@ -20,6 +20,8 @@ pub(in crate::law) struct Single {
     pub(in crate::law) input: usize,
     law: Arc<Input>,
     part: Quartic,
+    /// Sum of the changes of the part over the support, by which tables grow.
+    swing: f64,
     /// Tables by the binary logarithm of the largest `|s|` that they resolve. The second key is the tilt that a table was made for, or 0 if
     /// it serves all tilts.
     tables: Mutex<BTreeMap<(i32, u64), Arc<Table>>>,
@@ -59,7 +61,23 @@ pub(in crate::law) struct Tilted {
 
 impl Single {
     pub(in crate::law) fn new(input: usize, law: Arc<Input>, part: Quartic) -> Self {
-        Self { input, law, part, tables: Mutex::default() }
+        let extremes = roots(&derivative(&part), law.ends);
+        let places = extremes.as_slice().iter().copied().chain([law.ends[1]]);
+        let (swing, _) = places
+            .map(|z| value(&part, z))
+            .fold((0.0, value(&part, law.ends[0])), |(sum, before), at| (sum + f64::abs(at - before), at));
+        Self { input, law, part, swing, tables: Mutex::default() }
+    }
+
+    /// True if one table of the whole support serves all tilts of a level.
+    fn is_shared(&self, level: i32) -> bool {
+        /// Largest phase over the support, in radians, of a table that all tilts share: about a thousand nodes. Beyond it a table of the
+        /// interval with weight, which has one or two hundred, costs less although it serves one tilt only.
+        const LARGEST: f64 = 576.0;
+        /// Sum of the changes from which on tables are shared at any level, because levels end.
+        const ENDLESS: f64 = 1e100;
+        let phase = self.swing * libm::exp2(f64::from(level));
+        phase <= LARGEST || self.swing.is_nan() || self.swing > ENDLESS
     }
 
     fn table(&self, level: i32) -> Arc<Table> {
@@ -76,16 +94,24 @@ impl Single {
         table
     }
 
-    /// Nodes that resolve `top` and have weight under a tilt. If `top` is far beyond the tilt, only the interval with weight is resolved. A
-    /// large tilt has made that interval small.
+    /// Nodes that resolve `top` and have weight under a tilt. If a table of the whole support is large, or if `top` is far beyond the tilt,
+    /// only the interval with weight is resolved. A large tilt has made that interval small.
     fn table_at(&self, theta: f64, top: f64) -> Arc<Table> {
         /// Levels beyond that of the tilt from which on the interval is found first.
         const BEYOND: i32 = 2;
+        /// Levels from a table to the one that shows where its weight lies: neighbouring nodes of that one differ by at most 4 in the
+        /// exponent.
+        const COARSER: i32 = 2;
         let (own, wanted) = (level(theta.abs()), level(top));
-        if wanted <= own + BEYOND {
+        let beyond = wanted > own + BEYOND;
+        if !beyond && self.is_shared(wanted) {
             return self.table(wanted);
         }
-        let coarse = self.table(own);
+        let coarser = if beyond { own } else { wanted - COARSER };
+        let coarse = match self.is_shared(coarser) {
+            true => self.table(coarser),
+            false => self.table_at(theta, libm::exp2(f64::from(coarser))),
+        };
         self.table_for(wanted, theta.to_bits(), || {
             let exponent = |at: usize| theta * coarse.values[at] + coarse.logs[at];
             let most = (0..coarse.z.len()).map(exponent).fold(f64::NEG_INFINITY, f64::max);
@@ -232,6 +258,38 @@ impl Work for Rotate<'_> {
                 }
             }
             *out *= Complex::new(sum_re.iter().sum(), sum_im.iter().sum());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distribution::{Distribution, Uniform};
+
+    /// A uniform input has `M(s) = sinh(a)/a` with `a = s sqrt 3`, for large real parts too. Exponents of size `a` are rounded to some units
+    /// in the last place of `a`, and the 16 nodes of a rule keep 1e-13.
+    #[test]
+    fn large_tilts_are_resolved_where_they_have_weight() {
+        let law: Arc<dyn Distribution> = Arc::new(Uniform::new(-1.0, 1.0).unwrap());
+        let single = Single::new(0, Arc::new(Input::of(&law).unwrap()), [0.0, 1.0, 0.0, 0.0, 0.0]);
+        for theta in [1.0, 100.0, 1e3, 5e4, -2e3] {
+            let (a, sign) = (f64::abs(theta) * 3f64.sqrt(), f64::signum(theta));
+            let small = libm::exp(-2.0 * a);
+            let coth = (1.0 + small) / (1.0 - small);
+            let near = 1e-13 + 4.0 * f64::EPSILON * a;
+            let [k, k1, _] = single.cumulants(theta);
+            assert!((k - (a + libm::log1p(-small) - libm::log(2.0 * a))).abs() < near, "{theta}: {k}");
+            assert!((k1 - sign * 3f64.sqrt() * (coth - 1.0 / a)).abs() < 1e-13, "{theta}: {k1}");
+            let mut ratios = [Complex::ONE; 8];
+            let step = 0.3 * theta.abs();
+            single.multiply(theta, k, 0.0, step, &mut ratios);
+            for (i, ratio) in ratios.iter().enumerate() {
+                let y = sign * step * i as f64 * 3f64.sqrt();
+                let exact = Complex::new(libm::cos(y), coth * libm::sin(y)) * a / Complex::new(a, y);
+                assert!((*ratio - exact).abs() < near, "{theta} {i}: {ratio:?} {exact:?}");
+            }
+            assert!(single.tilted(theta, theta.abs()).z.len() < 1200, "{theta}");
         }
     }
 }
