@@ -41,21 +41,45 @@ pub(super) fn roots(c: &Quartic, interval: [f64; 2]) -> Few {
     of_degree(4, c, interval)
 }
 
-/// [`roots`] of a polynomial of degree `most` or less. The bound makes the recursion over derivatives end even if products overflow.
-fn of_degree(most: usize, c: &Quartic, [low, high]: [f64; 2]) -> Few {
-    let reach = low.abs().max(high.abs());
-    let mut degree = most;
-    // Drop a leading coefficient that is negligible over the whole interval.
-    let scale = (1..5).map(|k| c[k].abs() * reach.powi(k as i32)).fold(0.0, f64::max);
-    while degree > 0 && c[degree].abs() * reach.powi(degree as i32) <= 1e-17 * scale {
-        degree -= 1;
+/// Monotone pieces of a polynomial over an interval. They do not depend on its constant, so that its levels share them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pieces {
+    degree: usize,
+    /// Extremes, from the third degree on.
+    extremes: Few,
+}
+
+impl Pieces {
+    pub(super) fn of(c: &Quartic, interval: [f64; 2]) -> Self {
+        Self::of_degree(4, c, interval)
     }
-    match degree {
-        0 => Few::default(),
-        1 => inside(&[-c[0] / c[1]], low, high),
-        2 => parabola(c, low, high),
-        degree => between_extremes(degree, c, low, high),
+
+    /// Pieces of a polynomial of degree `most` or less. The bound makes the recursion over derivatives end even if products overflow.
+    fn of_degree(most: usize, c: &Quartic, [low, high]: [f64; 2]) -> Self {
+        let reach = low.abs().max(high.abs());
+        let mut degree = most;
+        // Drop a leading coefficient that is negligible over the whole interval.
+        let scale = (1..5).map(|k| c[k].abs() * reach.powi(k as i32)).fold(0.0, f64::max);
+        while degree > 0 && c[degree].abs() * reach.powi(degree as i32) <= 1e-17 * scale {
+            degree -= 1;
+        }
+        let extremes = if degree > 2 { of_degree(degree - 1, &derivative(c), [low, high]) } else { Few::default() };
+        Self { degree, extremes }
     }
+
+    /// [`roots`] of the polynomial with any constant.
+    pub(super) fn roots(&self, c: &Quartic, [low, high]: [f64; 2]) -> Few {
+        match self.degree {
+            0 => Few::default(),
+            1 => inside(&[-c[0] / c[1]], low, high),
+            2 => parabola(c, low, high),
+            _ => between_extremes(&self.extremes, c, low, high),
+        }
+    }
+}
+
+fn of_degree(most: usize, c: &Quartic, interval: [f64; 2]) -> Few {
+    Pieces::of_degree(most, c, interval).roots(c, interval)
 }
 
 fn inside(places: &[f64], low: f64, high: f64) -> Few {
@@ -79,9 +103,8 @@ fn parabola(c: &Quartic, low: f64, high: f64) -> Few {
     inside(&[a.min(b), a.max(b)], low, high)
 }
 
-fn between_extremes(degree: usize, c: &Quartic, low: f64, high: f64) -> Few {
+fn between_extremes(extremes: &Few, c: &Quartic, low: f64, high: f64) -> Few {
     let slope = derivative(c);
-    let extremes = of_degree(degree - 1, &slope, [low, high]);
     let mut found = Few::default();
     let (mut from, mut at_from) = (low, value(c, low));
     for to in extremes.as_slice().iter().copied().chain([high]) {

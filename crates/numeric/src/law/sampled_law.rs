@@ -16,7 +16,7 @@ use crate::law::input::Input;
 use crate::law::inversion::tail_inversion::Inversion;
 use crate::law::inversion::transform::{Summed, Transform};
 use crate::law::panels::{EXACT, expectation};
-use crate::law::polynomial::{Quartic, derivative, roots, value};
+use crate::law::polynomial::{Pieces, Quartic, derivative, roots, value};
 use crate::law::sampled_points::{Along, QUANTILE, REPLICATES, Sample, visit};
 use crate::law::surface::Surface;
 use crate::law::tail_table::Table;
@@ -391,29 +391,33 @@ impl Sampled {
         quantity: Quantity,
         exact: Option<LawFigure>,
     ) -> Estimates {
-        let inner = |polynomial: &Quartic| match direction.input() {
+        let inner = |polynomial: &Quartic, pieces: Option<&Pieces>| match direction.input().zip(pieces) {
             None => self.beside(off - polynomial[0], quantity),
-            Some(input) => {
+            Some((input, pieces)) => {
                 let mut polynomial = *polynomial;
                 polynomial[0] -= off;
                 match quantity {
-                    Quantity::LawTail(tail) => input.beyond(&polynomial, tail),
-                    Quantity::Density => input.density_of(&polynomial),
+                    Quantity::LawTail(tail) => input.beyond_by(pieces, &polynomial, tail),
+                    Quantity::Density => input.density_of(pieces, &polynomial),
                 }
             }
+        };
+        let all = |polynomials: &[Quartic], pieces: &[Pieces]| -> Vec<f64> {
+            polynomials.iter().enumerate().map(|(at, polynomial)| inner(polynomial, pieces.get(at))).collect()
         };
         let n = sample.full.len() / REPLICATES;
         let weight = |at: usize| sample.weights.get(at).copied().unwrap_or(1.0);
         let means = |f: &dyn Fn(usize) -> f64| -> Vec<f64> {
             (0..REPLICATES).map(|r| (r * n..(r + 1) * n).map(f).sum::<f64>() / n as f64).collect()
         };
-        let values: Vec<f64> = sample.full.iter().map(inner).collect();
+        let [of_full, of_control] = &sample.pieces;
+        let values = all(&sample.full, of_full);
         let (mean, error) = of_replicates(&means(&|at| weight(at) * values[at]));
         let tabulated = self.tabulated();
         let alone = LawFigure::new(mean, error + tabulated * mean.abs());
         let exact = exact.filter(|_| sample.control.len() == values.len());
         let beside = exact.map(|exact| {
-            let control: Vec<f64> = sample.control.iter().map(inner).collect();
+            let control = all(&sample.control, of_control);
             let (mean, error) = of_replicates(&means(&|at| weight(at) * (values[at] - control[at])));
             LawFigure::new(exact.value + mean, error + exact.error + tabulated * exact.value)
         });

@@ -2,7 +2,7 @@
 
 use crate::law::direction::{Direction, Terms};
 use crate::law::exponential_tilt::{Proposal, Tilts};
-use crate::law::polynomial::Quartic;
+use crate::law::polynomial::{Pieces, Quartic};
 use crate::parallel::prelude::*;
 use crate::sampling::{SOBOL_DIMENSIONS, Sobol};
 
@@ -21,6 +21,8 @@ pub(super) struct Sample {
     pub(super) full: Vec<Quartic>,
     /// Control variate as polynomials along the direction; empty if there is none.
     pub(super) control: Vec<Quartic>,
+    /// Monotone pieces of both along the direction, which all limits share; empty if there is no direction.
+    pub(super) pieces: [Vec<Pieces>; 2],
     /// Ratio of the own probability to that of the proposal; empty if the points follow the own distribution.
     pub(super) weights: Vec<f64>,
 }
@@ -36,13 +38,17 @@ pub(super) struct Along<'a> {
 impl Sample {
     /// Sample with this number of points in every replicate, a power of two.
     pub(super) fn of(along: &Along<'_>, tilts: &Tilts, proposal: Option<&Proposal>, points: usize, seed: u64) -> Self {
+        let ends = along.direction.input().map(|input| input.ends);
         let rows = visit(along.direction, tilts, proposal, points, seed, |z, weight| {
             let full = along.direction.along(z, along.full);
-            (full, along.control.map(|(direction, terms)| direction.along(z, terms)), weight)
+            let control = along.control.map(|(direction, terms)| direction.along(z, terms));
+            let pieces = [Some(full), control].map(|polynomial| Some(Pieces::of(&polynomial?, ends?)));
+            (full, control, weight, pieces)
         });
         Self {
             full: rows.iter().map(|row| row.0).collect(),
             control: rows.iter().filter_map(|row| row.1).collect(),
+            pieces: [0, 1].map(|of| rows.iter().filter_map(|row| row.3[of]).collect()),
             weights: if proposal.is_some() { rows.iter().map(|row| row.2).collect() } else { Vec::new() },
         }
     }
