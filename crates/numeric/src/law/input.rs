@@ -4,7 +4,7 @@ use std::sync::{Arc, LazyLock, OnceLock};
 
 use crate::distribution::{Distribution, Normal, Probability, ScoreTable, Uniform, behind_normal, standard_normal};
 use crate::law::LawTail;
-use crate::law::polynomial::{Pieces, Quartic, derivative, roots, value};
+use crate::law::polynomial::{MonotonePieces, Quartic, derivative, roots, value};
 
 /// Tail probability at which quadratures over an unbounded input end. What lies beyond adds less than the rounding of a double to a
 /// probability of 1e-30.
@@ -182,11 +182,11 @@ impl Input {
 
     /// Probability that a polynomial of the input lies strictly above 0 (upper tail) or below 0 (lower tail).
     pub(super) fn beyond(&self, polynomial: &Quartic, tail: LawTail) -> f64 {
-        self.beyond_by(&Pieces::of(polynomial, self.ends), polynomial, tail)
+        self.beyond_by(&MonotonePieces::of(polynomial, self.ends), polynomial, tail)
     }
 
     /// [`beyond`](Self::beyond) with the pieces of the polynomial.
-    pub(super) fn beyond_by(&self, pieces: &Pieces, polynomial: &Quartic, tail: LawTail) -> f64 {
+    pub(super) fn beyond_by(&self, pieces: &MonotonePieces, polynomial: &Quartic, tail: LawTail) -> f64 {
         let counts = |z: f64| value(polynomial, z) * tail.sign() > 0.0;
         let places = pieces.roots(polynomial, self.ends);
         let [low, high] = self.ends;
@@ -201,7 +201,7 @@ impl Input {
     }
 
     /// Density of a polynomial of the input at 0.
-    pub(super) fn density_of(&self, pieces: &Pieces, polynomial: &Quartic) -> f64 {
+    pub(super) fn density_of(&self, pieces: &MonotonePieces, polynomial: &Quartic) -> f64 {
         let slope = derivative(polynomial);
         let at = |&z: &f64| self.density(z) / value(&slope, z).abs();
         pieces.roots(polynomial, self.ends).as_slice().iter().map(at).sum()

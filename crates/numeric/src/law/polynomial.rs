@@ -43,18 +43,18 @@ pub(super) fn roots(c: &Quartic, interval: [f64; 2]) -> Few {
 
 /// Monotone pieces of a polynomial over an interval. They do not depend on its constant, so that its levels share them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pieces {
+pub(super) struct MonotonePieces {
     degree: usize,
     /// Extremes, from the third degree on.
     extremes: Few,
 }
 
-impl Pieces {
+impl MonotonePieces {
     pub(super) fn of(c: &Quartic, interval: [f64; 2]) -> Self {
         Self::of_degree(4, c, interval)
     }
 
-    /// Pieces of a polynomial of degree `most` or less. The bound makes the recursion over derivatives end even if products overflow.
+    /// MonotonePieces of a polynomial of degree `most` or less. The bound makes the recursion over derivatives end even if products overflow.
     fn of_degree(most: usize, c: &Quartic, [low, high]: [f64; 2]) -> Self {
         let reach = low.abs().max(high.abs());
         let mut degree = most;
@@ -79,7 +79,7 @@ impl Pieces {
 }
 
 fn of_degree(most: usize, c: &Quartic, interval: [f64; 2]) -> Few {
-    Pieces::of_degree(most, c, interval).roots(c, interval)
+    MonotonePieces::of_degree(most, c, interval).roots(c, interval)
 }
 
 fn inside(places: &[f64], low: f64, high: f64) -> Few {

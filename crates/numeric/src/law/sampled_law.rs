@@ -16,7 +16,7 @@ use crate::law::input::Input;
 use crate::law::inversion::tail_inversion::Inversion;
 use crate::law::inversion::transform::{Summed, Transform};
 use crate::law::panels::{EXACT, expectation};
-use crate::law::polynomial::{Pieces, Quartic, derivative, roots, value};
+use crate::law::polynomial::{MonotonePieces, Quartic, derivative, roots, value};
 use crate::law::sampled_points::{Along, QUANTILE, REPLICATES, Sample, visit};
 use crate::law::surface::Surface;
 use crate::law::tail_table::Table;
@@ -391,7 +391,7 @@ impl Sampled {
         quantity: Quantity,
         exact: Option<LawFigure>,
     ) -> Estimates {
-        let inner = |polynomial: &Quartic, pieces: Option<&Pieces>| match direction.input().zip(pieces) {
+        let inner = |polynomial: &Quartic, pieces: Option<&MonotonePieces>| match direction.input().zip(pieces) {
             None => self.beside(off - polynomial[0], quantity),
             Some((input, pieces)) => {
                 let mut polynomial = *polynomial;
@@ -402,7 +402,7 @@ impl Sampled {
                 }
             }
         };
-        let all = |polynomials: &[Quartic], pieces: &[Pieces]| -> Vec<f64> {
+        let all = |polynomials: &[Quartic], pieces: &[MonotonePieces]| -> Vec<f64> {
             polynomials.iter().enumerate().map(|(at, polynomial)| inner(polynomial, pieces.get(at))).collect()
         };
         let n = sample.full.len() / REPLICATES;

@@ -2,7 +2,7 @@
 
 use crate::law::direction::{Direction, Terms};
 use crate::law::exponential_tilt::{Proposal, Tilts};
-use crate::law::polynomial::{Pieces, Quartic};
+use crate::law::polynomial::{MonotonePieces, Quartic};
 use crate::parallel::prelude::*;
 use crate::sampling::{SOBOL_DIMENSIONS, Sobol};
 
@@ -22,7 +22,7 @@ pub(super) struct Sample {
     /// Control variate as polynomials along the direction; empty if there is none.
     pub(super) control: Vec<Quartic>,
     /// Monotone pieces of both along the direction, which all limits share; empty if there is no direction.
-    pub(super) pieces: [Vec<Pieces>; 2],
+    pub(super) pieces: [Vec<MonotonePieces>; 2],
     /// Ratio of the own probability to that of the proposal; empty if the points follow the own distribution.
     pub(super) weights: Vec<f64>,
 }
@@ -42,7 +42,7 @@ impl Sample {
         let rows = visit(along.direction, tilts, proposal, points, seed, |z, weight| {
             let full = along.direction.along(z, along.full);
             let control = along.control.map(|(direction, terms)| direction.along(z, terms));
-            let pieces = [Some(full), control].map(|polynomial| Some(Pieces::of(&polynomial?, ends?)));
+            let pieces = [Some(full), control].map(|polynomial| Some(MonotonePieces::of(&polynomial?, ends?)));
             (full, control, weight, pieces)
         });
         Self {

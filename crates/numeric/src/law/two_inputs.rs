@@ -3,7 +3,7 @@
 use crate::law::direction::{Direction, Terms};
 use crate::law::input::Input;
 use crate::law::panels::{EXACT, NEARLY, expectation};
-use crate::law::polynomial::{Pieces, Quartic, range, roots, value};
+use crate::law::polynomial::{MonotonePieces, Quartic, range, roots, value};
 use crate::law::sampled_law::pathwise;
 use crate::law::{LawFigure, LawTail};
 
@@ -73,7 +73,9 @@ impl Single {
     }
 
     pub(super) fn density(&self, y: f64) -> LawFigure {
-        self.figure(y, EXACT, |input, polynomial| input.density_of(&Pieces::of(polynomial, input.ends), polynomial))
+        self.figure(y, EXACT, |input, polynomial| {
+            input.density_of(&MonotonePieces::of(polynomial, input.ends), polynomial)
+        })
     }
 
     /// Surface minus a limit, as a polynomial along the direction.

@@ -61,7 +61,7 @@ impl NodeFactors {
 
     /// Multiplies by the factors of another list.
     pub(super) fn multiply(&mut self, other: &Self) {
-        on_this_processor(Products { own: self, other });
+        on_this_processor(Multiplication { own: self, other });
     }
 
     /// Sum of the factors with these weights.
@@ -71,12 +71,12 @@ impl NodeFactors {
     }
 }
 
-struct Products<'a> {
+struct Multiplication<'a> {
     own: &'a mut NodeFactors,
     other: &'a NodeFactors,
 }
 
-impl Work for Products<'_> {
+impl Work for Multiplication<'_> {
     type Output = ();
 
     #[inline(always)]
