@@ -144,6 +144,34 @@ impl System {
         jacobian
     }
 
+    /// Returns the derivatives by each of these variables at a state, with differences in place of those that do not exist. A kink at the
+    /// nominal state leaves the scales as they are beside it.
+    fn slopes(&self, given: &[f64], u: &[f64], by: &[usize]) -> Mat<f64> {
+        let mut slopes = self.derivatives(given, u, by);
+        for (column, &index) in by.iter().enumerate() {
+            if (0..self.len()).all(|row| slopes[(row, column)].is_finite()) {
+                continue;
+            }
+            // No scale is found yet: a variable moves by a part of its value, and of 1 if it is small.
+            let step = STEP * self.variable(given, u, index).abs().max(1.0);
+            let moved = |by: f64| {
+                let (mut given, mut u) = (given.to_vec(), u.to_vec());
+                match index.checked_sub(self.given) {
+                    None => given[index] += by,
+                    Some(unknown) => u[unknown] += by,
+                }
+                self.values(&given, &u)
+            };
+            let (up, down) = (moved(step), moved(-step));
+            for row in 0..self.len() {
+                if !slopes[(row, column)].is_finite() {
+                    slopes[(row, column)] = (up[row] - down[row]) / (2.0 * step);
+                }
+            }
+        }
+        slopes
+    }
+
     /// Returns the distance that an unknown may move before its curvature counts as much as its slope.
     fn bend(&self, given: &[f64], u: &[f64], unknown: usize, equations: &[f64]) -> f64 {
         let along = |index: usize| [f64::from(u8::from(index == self.given + unknown)); 2];
@@ -161,7 +189,7 @@ impl System {
     /// variables. The scale of an unknown is the move that changes an equation by its scale, or from which the curvature dominates.
     pub(super) fn scales(&self, given: &[f64], u: &[f64]) -> Scales {
         let all: Vec<usize> = self.uses.iter().copied().chain(self.given..self.given + self.len()).collect();
-        let derivatives = self.derivatives(given, u, &all);
+        let derivatives = self.slopes(given, u, &all);
         let finite = |value: f64| if value.is_finite() { value.abs() } else { 0.0 };
         let mut equations: Vec<f64> = (0..self.len())
             .map(|i| {

@@ -202,6 +202,28 @@ fn the_expanded_study_gives_the_same_figures() {
     // Its warnings name the joint and its contacts too.
     let [own, plain] = [&study, &expanded].map(|study| analyze(&study.problem, &Method::Auto.into()).unwrap());
     shares(&plain.warnings, false);
+/// A table whose legs end at the origin of all heights is the same table: its nominal state is no dead centre, whatever the origin.
+#[test]
+fn a_tie_at_the_origin_is_no_dead_centre() {
+    let moved = |origin: f64| {
+        let text = read("examples/four-legged-table/study.toml");
+        let text = text.replace("nominal = 700", &format!("nominal = {}", 700.0 - origin));
+        let text = text.replace("[0, 0, 700]", &format!("[0, 0, {}]", 700.0 - origin));
+        let text = text.replace("point = [0, 0, 0]", &format!("point = [0, 0, {origin}]"));
+        let study = parse(&text).unwrap();
+        analyze(&study.problem, &Method::Auto.into()).unwrap()
+    };
+    let [high, low] = [0.0, 700.0].map(moved);
+    for found in [&high, &low] {
+        let codes: Vec<&str> = found.warnings.iter().map(|warning| warning.code()).collect();
+        assert_eq!(codes, ["contact-switch"]);
+    }
+    let [high, low] = [&high, &low].map(|found| found.characteristics[0].moments.unwrap());
+    // A height of 700 mm leaves 1e-13 mm of rounding.
+    close(high.mean(), low.mean(), 1e-11, 0.0);
+    close(high.sigma(), low.sigma(), 1e-11, 0.0);
+}
+
     assert_eq!(own.warnings, plain.warnings);
 }
 
