@@ -305,6 +305,82 @@ fn a_singular_nominal_position_is_an_error() {
     );
 }
 
+/// Text of parts in sequence, each on the frame of the one before, with four dimensions of the frame and two of the place on it.
+fn sequence(parts: usize) -> String {
+    let mut text = "[dimensions]\n".to_owned();
+    for i in 0..parts {
+        for (name, nominal, tolerance) in
+            [("x", 20.0, 0.1), ("y", 5.0, 0.1), ("z", 30.0, 0.1), ("a", 8.0, 0.5), ("u", 1.0, 0.1), ("v", -2.0, 0.1)]
+        {
+            let nominal = nominal + 0.3 * i as f64;
+            text += &format!("{name}{i} = {{ nominal = {nominal:?}, tolerance = {tolerance} }}\n");
+        }
+    }
+    for i in 0..parts {
+        let about = ["x", "y"][i % 2];
+        text += &format!("[parts.p{i}]\nbase = {{ frame = [\"u{i}\", \"v{i}\", 0], z = \"z\", x = \"x\" }}\n");
+        text += &format!(
+            "end = {{ frame = [\"x{i}\", \"y{i}\", \"z{i}\"], z = {{ turned = \"a{i}*deg\", about = \"{about}\", from = \"z\" }}, x = \"{about}\" }}\n\
+             tip = {{ point = [\"x{i}\", \"y{i}\", \"z{i}\"] }}\n"
+        );
+    }
+    text += "[joints]\n";
+    (1..parts).for_each(|i| text += &format!("j{i} = {{ rigid = [\"p{}.end\", \"p{i}.base\"] }}\n", i - 1));
+    text += &format!("[characteristics]\nh = {{ of = \"p{}.tip\", from = \"p0.base\", along = \"z\" }}\n", parts - 1);
+    text
+}
+
+/// Mixed derivatives of many pairs come from multipliers, those of few pairs from numbers that carry their derivatives. The two have no
+/// step in common. Rounding of the sums is 1e-13 of the greatest derivative.
+#[test]
+fn many_mixed_derivatives_are_those_of_each_pair() {
+    let problem = study(&sequence(4)).problem;
+    let count = problem.dimensions().len();
+    let pairs: Vec<(usize, usize)> = (0..count).flat_map(|j| (j + 1..count).map(move |k| (j, k))).collect();
+    for x in [centre(&problem), random_points(&problem, 1).remove(0)] {
+        let together = exact(&problem, &x, &pairs).mixed;
+        let alone: Vec<Option<f64>> = pairs.chunks(50).flat_map(|pairs| exact(&problem, &x, pairs).mixed).collect();
+        let size = alone.iter().map(|value| value.unwrap().abs()).fold(0.0, f64::max);
+        for (pair, (together, alone)) in pairs.iter().zip(together.into_iter().zip(alone)) {
+            let (found, expected) = (together.unwrap(), alone.unwrap());
+            assert!((found - expected).abs() <= 1e-12 * size, "{pair:?}: {found} for {expected}");
+        }
+    }
+}
+
+/// An unknown itself is an output, and a kink leaves the derivatives to each pair: only the pairs of the kink have none.
+#[test]
+fn many_mixed_derivatives_of_an_unknown_and_beside_a_kink() {
+    let names: Vec<String> = (1..=12).map(|i| format!("a{i}")).collect();
+    let dimensions: String =
+        names.iter().map(|name| format!("{name} = {{ nominal = 1, tolerance = 0.1 }}\n")).collect();
+    let squares = names.windows(2).map(|pair| format!("{}*{}^2", pair[0], pair[1])).collect::<Vec<_>>().join(" + ");
+    let pairs: Vec<(usize, usize)> = (0..12).flat_map(|j| (j + 1..12).map(move |k| (j, k))).collect();
+    let of = |equation: &str| {
+        let text = format!(
+            "[dimensions]\n{dimensions}[unknowns]\nu = 3.3\n[equations]\none = \"{equation}\"\n[characteristics]\nu = {{}}\n"
+        );
+        let problem = study(&text).problem;
+        exact(&problem, &centre(&problem), &pairs).mixed
+    };
+    // u = sqrt(s) with s = 11, s_j = 3 inside, 1 for the first and 2 for the last, and s_jk = 2 for neighbours.
+    let root = 11.0f64.sqrt();
+    let slope = |j: usize| match j {
+        0 => 1.0,
+        11 => 2.0,
+        _ => 3.0,
+    };
+    for (&(j, k), found) in pairs.iter().zip(of(&format!("u^2 - ({squares})"))) {
+        let mixed = if k == j + 1 { 2.0 } else { 0.0 };
+        let expected = mixed / (2.0 * root) - slope(j) * slope(k) / (4.0 * root * root * root);
+        close(found.unwrap(), expected, 1e-13, 1.0);
+    }
+    for (&(j, k), found) in pairs.iter().zip(of(&format!("u - ({squares}) - abs(a1 - 1)"))) {
+        let expected = (j > 0).then_some(if k == j + 1 { 2.0 } else { 0.0 });
+        assert_eq!(found, expected, "{j}, {k}");
+    }
+}
+
 /// Conditions depend on the output of a model, which takes one more evaluation for the nominal state.
 #[test]
 fn conditions_use_outputs_of_a_model() {

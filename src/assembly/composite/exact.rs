@@ -2,7 +2,7 @@
 
 use crate::assembly::composite::{Composite, Needs, Origin};
 use crate::assembly::formula::Jet;
-use crate::assembly::implicit::Tangent;
+use crate::assembly::implicit::{ImplicitOutput, Tangent};
 use crate::assembly::{Derivatives, Directions, Run};
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::power::Power;
@@ -17,7 +17,7 @@ impl Composite {
     /// [`derivatives_per`](crate::AssemblyFunction::derivatives_per).
     ///
     /// Cost: for `P` pairs and `N` inputs about ten evaluations of the formulas for each of `N + P` directions. With unknowns, as many
-    /// linear systems are solved. If `P` is 64 or more and the output is a formula of the inputs alone, it is `2 N` directions.
+    /// linear systems are solved. If `P` is 64 or more and there are no loops, it is `2 N` directions and `N` linear systems.
     pub(super) fn exact(
         &self,
         outputs: &[usize],
@@ -42,8 +42,7 @@ impl Composite {
         // Pure derivatives need one jet for each input, mixed ones a jet for each pair, unless a tape gives all pairs at once.
         let along = |u: usize, v: usize| self.jets(&asked, &given, tangent.as_ref(), [(u, unit(u)), (v, unit(v))]);
         let pure: Vec<Vec<Jet>> = directions.inputs.par_iter().map(|&d| along(d, d)).collect();
-        let together: Vec<Option<Vec<f64>>> =
-            asked.iter().map(|&origin| self.mixed_together(origin, &given, directions, exponents)).collect();
+        let together = self.mixed_together(&asked, &given, tangent.as_ref(), directions, exponents);
         let open: Vec<Origin> =
             asked.iter().zip(&together).filter(|(_, together)| together.is_none()).map(|(&origin, _)| origin).collect();
         let each = |&(j, k): &(usize, usize)| self.jets(&open, &given, tangent.as_ref(), [(j, unit(j)), (k, unit(k))]);
@@ -76,22 +75,42 @@ impl Composite {
         derivatives
     }
 
-    /// Returns all mixed derivatives of a formula of dimensions alone, or None if there are few pairs or if a derivative may not exist.
+    /// Returns all mixed derivatives of every output, or None for an output with a derivative that may not exist, and for few pairs.
     fn mixed_together(
         &self,
-        origin: Origin,
+        asked: &[Origin],
         given: &[f64],
+        tangent: Option<&Tangent<'_>>,
         directions: &Directions<'_>,
         exponents: Option<&[i32]>,
-    ) -> Option<Vec<f64>> {
-        match origin {
-            Origin::Formula(formula)
-                if directions.pairs.len() >= TOGETHER && !self.needs(origin).unknowns && exponents.is_none() =>
-            {
-                self.formulas.mixed(formula, given, directions.pairs)
-            }
-            _ => None,
+    ) -> Vec<Option<Vec<f64>>> {
+        let mut together = vec![None; asked.len()];
+        if directions.pairs.len() < TOGETHER || exponents.is_some() {
+            return together;
         }
+        let (mut places, mut implicit) = (Vec::new(), Vec::new());
+        for (place, &origin) in asked.iter().enumerate() {
+            match origin {
+                Origin::Formula(formula) if !self.needs(origin).unknowns => {
+                    together[place] = self.formulas.mixed(formula, given, directions.pairs);
+                }
+                Origin::Formula(formula) => {
+                    places.push(place);
+                    implicit.push(ImplicitOutput::Formula(formula));
+                }
+                Origin::Unknown(unknown) => {
+                    places.push(place);
+                    implicit.push(ImplicitOutput::Unknown(unknown));
+                }
+                Origin::Model(_) => {}
+            }
+        }
+        let found = tangent.filter(|_| !places.is_empty());
+        let found = found.and_then(|tangent| tangent.mixed(&self.formulas, &implicit, directions.pairs));
+        for (place, mixed) in places.into_iter().zip(found.into_iter().flatten()) {
+            together[place] = Some(mixed);
+        }
+        together
     }
 
     /// Evaluates these outputs along two dimensions, each with the amount by which it moves.

@@ -19,14 +19,16 @@ struct Local {
     second: [f64; 3],
 }
 
-/// Operations of a formula at one point, in the order of computation.
-struct Tape {
+/// Operations of some formulas at one point, in the order of computation.
+pub(crate) struct Tape {
     /// Operations that depend on a variable; None for the variable itself.
     operations: Vec<Option<Local>>,
     /// Variables with their places.
     variables: Vec<(usize, usize)>,
-    /// Derivative of the result by every operation.
-    adjoints: Vec<f64>,
+    /// Places of the formulas; None for a formula that cannot change with a variable.
+    results: Vec<Option<usize>>,
+    /// Number of variables, with those that no formula uses.
+    count: usize,
 }
 
 /// Value of a node, with its place on the tape.
@@ -46,7 +48,8 @@ impl FormulaSet {
     ///
     /// Cost: `n` variables of a formula of `m` operations take about `12 n m` products, for any number of pairs.
     pub(crate) fn mixed(&self, formula: usize, at: &[f64], pairs: &[(usize, usize)]) -> Option<Vec<f64>> {
-        let tape = Tape::of(self, self.roots[formula], at)?;
+        let tape = self.tape(&[formula], at)?;
+        let adjoints = tape.adjoints(&[1.0])?;
         let mut places = vec![None; at.len()];
         tape.variables.iter().for_each(|&(variable, place)| places[variable] = Some(place));
         let mut of_first = vec![Vec::new(); at.len()];
@@ -58,7 +61,10 @@ impl FormulaSet {
         let along: Vec<usize> = (0..at.len()).filter(|&variable| !of_first[variable].is_empty()).collect();
         let passes: Vec<Vec<f64>> = (along.par_chunks(LANES))
             .map(|along| {
-                let changes = tape.changes(&along.iter().filter_map(|&variable| places[variable]).collect::<Vec<_>>());
+                let mut moves = vec![[0.0; LANES]; tape.operations.len()];
+                let of_along = along.iter().filter_map(|&variable| places[variable]);
+                of_along.enumerate().for_each(|(lane, place)| moves[place][lane] = 1.0);
+                let changes = tape.changes(moves, &adjoints);
                 let change =
                     |index: u32, lane: usize| places[pairs[index as usize].1].map(|place| changes[place][lane]);
                 let of_lane = |(lane, &first): (usize, &usize)| {
@@ -73,14 +79,22 @@ impl FormulaSet {
         indices.zip(passes.into_iter().flatten()).for_each(|(&index, value)| mixed[index as usize] = value);
         mixed.iter().all(|value| value.is_finite()).then_some(mixed)
     }
+
+    /// Returns the operations of some formulas at a point, with their derivatives. Returns None if a formula has a kink, a jump or the edge
+    /// of a domain at this very point, or a number that is not finite.
+    pub(crate) fn tape(&self, formulas: &[usize], at: &[f64]) -> Option<Tape> {
+        let roots: Vec<NodeId> = formulas.iter().map(|&formula| self.roots[formula]).collect();
+        Tape::of(self, &roots, at)
+    }
 }
 
 impl Tape {
-    fn of(set: &FormulaSet, root: NodeId, at: &[f64]) -> Option<Self> {
+    fn of(set: &FormulaSet, roots: &[NodeId], at: &[f64]) -> Option<Self> {
         let nodes = set.graph.nodes();
-        let needed = set.graph.needed([root]);
+        let needed = set.graph.needed(roots.iter().copied());
         let mut known = vec![NodeJet { jet: Jet::constant(f64::NAN), place: None }; nodes.len()];
-        let mut tape = Self { operations: Vec::new(), variables: Vec::new(), adjoints: Vec::new() };
+        let (operations, variables, results) = (Vec::new(), Vec::new(), Vec::new());
+        let mut tape = Self { operations, variables, results, count: at.len() };
         // Values come first, because they decide which branches count.
         let mut values = vec![f64::NAN; nodes.len()];
         for (id, node) in nodes.iter().enumerate().filter(|(id, _)| needed[*id]) {
@@ -97,7 +111,7 @@ impl Tape {
                 },
             };
         }
-        let counts = taken(nodes, root, &values);
+        let counts = taken(nodes, roots, &values);
         for (id, node) in nodes.iter().enumerate().filter(|(id, _)| counts[*id]) {
             let of = |id: NodeId| known[id as usize];
             let next = tape.operations.len();
@@ -128,28 +142,59 @@ impl Tape {
             known[id] = NodeJet { jet, place };
         }
         tape.variables.sort_unstable();
-        tape.adjoints = vec![0.0; tape.operations.len()];
-        if let Some(place) = known[root as usize].place {
-            tape.adjoints[place] = 1.0;
+        tape.results = roots.iter().map(|&root| known[root as usize].place).collect();
+        Some(tape)
+    }
+
+    /// Returns the derivative of the weighted sum of the formulas by every operation. Returns None if one is not finite.
+    fn adjoints(&self, weights: &[f64]) -> Option<Vec<f64>> {
+        let mut adjoints = vec![0.0; self.operations.len()];
+        for (place, weight) in self.results.iter().zip(weights) {
+            place.iter().for_each(|&place| adjoints[place] += weight);
         }
-        // Backward pass: derivative of the result by every operation.
-        for place in (0..tape.operations.len()).rev() {
-            if let Some(local) = &tape.operations[place] {
-                let adjoint = tape.adjoints[place];
+        for place in (0..self.operations.len()).rev() {
+            if let Some(local) = &self.operations[place] {
+                let adjoint = adjoints[place];
                 for (operand, slope) in local.of.into_iter().zip(local.first) {
-                    tape.adjoints[operand] += adjoint * slope;
+                    adjoints[operand] += adjoint * slope;
                 }
             }
         }
-        tape.adjoints.iter().all(|adjoint| adjoint.is_finite()).then_some(tape)
+        adjoints.iter().all(|adjoint| adjoint.is_finite()).then_some(adjoints)
     }
 
-    /// Returns the change of the derivative by every operation along each of these variables.
-    fn changes(&self, along: &[usize]) -> Vec<[f64; LANES]> {
-        let mut moves = vec![[0.0; LANES]; self.operations.len()];
-        for (lane, &place) in along.iter().enumerate() {
-            moves[place][lane] = 1.0;
-        }
+    /// Returns the derivatives of the weighted sum of the formulas by every variable. Returns None if one is not finite.
+    pub(crate) fn gradient(&self, weights: &[f64]) -> Option<Vec<f64>> {
+        let adjoints = self.adjoints(weights)?;
+        let mut gradient = vec![0.0; self.count];
+        self.variables.iter().for_each(|&(variable, place)| gradient[variable] = adjoints[place]);
+        Some(gradient)
+    }
+
+    /// Returns the change of the gradient of the weighted sum along every direction: the product of its Hessian with the direction. Returns
+    /// None if a number is not finite.
+    ///
+    /// Cost: a formula of `m` operations takes about `12 m` products for each direction.
+    pub(crate) fn curvatures(&self, weights: &[f64], along: &[&[f64]]) -> Option<Vec<Vec<f64>>> {
+        let adjoints = self.adjoints(weights)?;
+        let of_lanes = |along: &[&[f64]]| -> Vec<Vec<f64>> {
+            let mut moves = vec![[0.0; LANES]; self.operations.len()];
+            for &(variable, place) in &self.variables {
+                along.iter().enumerate().for_each(|(lane, direction)| moves[place][lane] = direction[variable]);
+            }
+            let changes = self.changes(moves, &adjoints);
+            let mut curvatures = vec![vec![0.0; self.count]; along.len()];
+            for &(variable, place) in &self.variables {
+                curvatures.iter_mut().enumerate().for_each(|(lane, of)| of[variable] = changes[place][lane]);
+            }
+            curvatures
+        };
+        let found: Vec<Vec<f64>> = along.par_chunks(LANES).flat_map_iter(of_lanes).collect();
+        found.iter().flatten().all(|value| value.is_finite()).then_some(found)
+    }
+
+    /// Returns the change of the derivative by every operation. `moves` holds the moves of the variables along the directions of the lanes.
+    fn changes(&self, mut moves: Vec<[f64; LANES]>, adjoints: &[f64]) -> Vec<[f64; LANES]> {
         for (place, local) in self.operations.iter().enumerate() {
             if let Some(Local { of: [a, b], first, .. }) = local {
                 let (a, b) = (moves[*a], moves[*b]);
@@ -160,7 +205,7 @@ impl Tape {
         let mut changes = vec![[0.0; LANES]; self.operations.len()];
         for (place, local) in self.operations.iter().enumerate().rev() {
             if let Some(Local { of: [a, b], first, second: [aa, ab, bb] }) = local {
-                let (own, adjoint) = (changes[place], self.adjoints[place]);
+                let (own, adjoint) = (changes[place], adjoints[place]);
                 let [aa, ab, bb] = [adjoint * aa, adjoint * ab, adjoint * bb];
                 let (of_a, of_b) = (moves[*a], moves[*b]);
                 for lane in 0..LANES {
@@ -173,11 +218,11 @@ impl Tape {
     }
 }
 
-/// Returns a flag for each node on which the result depends at this point: the condition and one branch of an `if`.
-fn taken(nodes: &[GraphNode], root: NodeId, values: &[f64]) -> Vec<bool> {
+/// Returns a flag for each node on which the results depend at this point: the condition and one branch of an `if`.
+fn taken(nodes: &[GraphNode], roots: &[NodeId], values: &[f64]) -> Vec<bool> {
     let mut taken = vec![false; nodes.len()];
-    taken[root as usize] = true;
-    for id in (0..nodes.len()).rev().filter(|&id| id <= root as usize) {
+    roots.iter().for_each(|&root| taken[root as usize] = true);
+    for id in (0..nodes.len()).rev() {
         if !taken[id] {
             continue;
         }

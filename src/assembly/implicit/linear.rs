@@ -37,6 +37,13 @@ impl Linear {
         if exact.iter().all(|t| t.is_finite()) { exact } else { self.least(b) }
     }
 
+    /// Returns the solution of `J^T t = b`, or None if `J` is singular.
+    pub(super) fn solve_transposed(&self, b: &[f64]) -> Option<Vec<f64>> {
+        let found = self.lu.solve_transpose(&Mat::from_fn(b.len(), 1, |i, _| b[i]));
+        let found: Vec<f64> = (0..b.len()).map(|i| found[(i, 0)]).collect();
+        found.iter().all(|t| t.is_finite()).then_some(found)
+    }
+
     /// Returns the smallest step with the least residual, along the directions that are determined.
     pub(super) fn least(&self, b: &[f64]) -> Vec<f64> {
         let Ok(svd) = self.matrix.svd() else { return vec![0.0; b.len()] };

@@ -42,5 +42,5 @@ pub use subject::{EquationSubject, OpenJoint, PressedJoint};
 
 pub(super) use anchor::Anchor;
 pub(super) use assembler::Assembler;
-pub(super) use derivatives::Tangent;
+pub(super) use derivatives::{ImplicitOutput, Tangent};
 pub(super) use rows::RowSolution;
