@@ -116,6 +116,7 @@ impl Closure<'_> {
                 add_orthogonal(&mut span, &vector);
             }
         }
+        number_alike(&mut found);
         found
     }
 
@@ -232,6 +233,17 @@ impl Closure<'_> {
             }
         }
         Ok(())
+    }
+}
+
+/// Numbers motions with the same words, so that each has a name of its own.
+fn number_alike(motions: &mut [FreeMotion]) {
+    let texts: Vec<String> = motions.iter().map(|motion| motion.text.clone()).collect();
+    for (place, motion) in motions.iter_mut().enumerate() {
+        let before = texts[..place].iter().filter(|&text| *text == texts[place]).count();
+        if before > 0 {
+            motion.text = format!("{} ({})", texts[place], before + 1);
+        }
     }
 }
 
