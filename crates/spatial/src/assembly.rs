@@ -229,6 +229,8 @@ pub struct Assembly {
     pub measures: Vec<Measure>,
     /// Unit that a constant length needs in a formula; None if it needs none.
     pub length_unit: Option<String>,
+    /// Name of the unit in which faults show lengths, and its size in the unit of the numbers; None if it has none.
+    pub shown_unit: Option<(String, f64)>,
 }
 
 impl PartJoint {

@@ -104,6 +104,7 @@ impl Assembly {
     ///         takes: None, value: None, offset: None, tilt: None, side_by_side: false, press: None,
     ///     }],
     ///     length_unit: None,
+    ///     shown_unit: None,
     ///     measures: vec![Measure { name: "height".into(), kind: MeasureKind::Distance, between: [id(1, 1), id(0, 0)] }],
     /// };
     /// let closed = assembly.close()?;
@@ -225,8 +226,9 @@ impl Assembly {
         match closure.holds(joint, closure.used[joint][row - first]) {
             Holds::Direction => format!("{:.4} deg", libm::asin(residual.min(1.0)).to_degrees()),
             Holds::Distance => {
-                let unit = self.length_unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
-                format!("{:.6}{unit}", residual * closure.size)
+                let (unit, size) = self.shown_unit.as_ref().map_or(("", 1.0), |(unit, size)| (unit.as_str(), *size));
+                let text = format!("{:.6} {unit}", residual * closure.size / size);
+                text.trim_end().to_owned()
             }
         }
     }

@@ -45,6 +45,7 @@ fn pair(kind: JointKind, kinds: [FeatureKind; 2]) -> Assembly {
         }],
         measures: Vec::new(),
         length_unit: None,
+        shown_unit: None,
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// Joint of rigid parts that an equation belongs to.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum EquationSubject {
     /// A freedom that a joint takes.
     Joint {
@@ -13,13 +13,15 @@ pub enum EquationSubject {
         freedom: String,
         /// True if the freedom is a rotation, whose residual has no unit.
         rotation: bool,
+        /// Name and size of the unit in which a failure shows its residual; None if it has none.
+        unit: Option<(String, f64)>,
     },
     /// A rod between two points. Its equation is the distance of the points less the length of the rod.
     Rod {
         /// Name of the joint.
         name: String,
-        /// Unit in which the equation has its value; None if it has none.
-        unit: Option<String>,
+        /// Name and size of the unit in which a failure shows lengths; None if it has none.
+        unit: Option<(String, f64)>,
     },
 }
 
@@ -63,10 +65,13 @@ impl fmt::Display for EquationSubject {
 
 impl fmt::Display for OpenJoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let EquationSubject::Rod { name, unit } = &self.subject else {
-            return write!(f, "{} is off by {}", self.subject, short(self.residual));
+        let (EquationSubject::Rod { unit, .. } | EquationSubject::Joint { unit, .. }) = &self.subject;
+        let size = unit.as_ref().map_or(1.0, |(_, size)| *size);
+        let unit = unit.as_ref().map_or_else(String::new, |(unit, _)| format!(" {unit}"));
+        let short = |value: f64| short(value / size);
+        let EquationSubject::Rod { name, .. } = &self.subject else {
+            return write!(f, "{} is off by {}{unit}", self.subject, short(self.residual));
         };
-        let unit = unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
         let reach = if self.residual > 0.0 { "cannot reach" } else { "is too long" };
         match self.lengths {
             Some([apart, length]) => {

@@ -2,7 +2,7 @@
 
 use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol_study::Study;
-use sensitol_testing::{parse, read};
+use sensitol_testing::{close, parse, read};
 
 use super::spatial::{HEIGHT, SEATED, plate};
 
@@ -226,7 +226,14 @@ fn every_wrong_press_names_its_remedy() {
             height,
             "joints.stand",
             "`press` and `against`",
-            "write the contact points as `targets`",
+            "a plane with flatness and size, or write the contact points as `targets`",
+        ),
+        (
+            stand("press = \"-z\", against = \"table.plate\""),
+            height,
+            "parts.table.plate",
+            "`flatness` is missing",
+            "leave out `press`",
         ),
         (stand("press = \"-z\""), height, "joints.stand", "`targets` is missing", "\"table.leg1\""),
         (stand(four), height, "joints.stand", "`press` is missing", "press = [0, 0, -1]"),
@@ -387,14 +394,75 @@ fn a_rod_that_cannot_reach_is_named_with_its_lengths() {
     assert!((apart - 60.0).abs() < 0.01, "{said}");
     let said = failure(&study, &[("L", 101.0)]);
     assert!(said.contains("rod `link` (101 mm) is too long: its ends are "), "{said}");
-    // With converted units lengths are in metres, and the scales of the equations are others: the search may end with the pivot open.
+    // With converted units the scales of the equations are others: the search may end with the pivot open. Lengths are in the unit of the
+    // study all the same.
     let study = parse(&format!("units = \"convert\"\n{ARM}")).unwrap();
     let said = failure(&study, &[("L", 59.0)]);
     assert!(said.starts_with("the joints do not close: "), "{said}");
-    assert!(
-        said.contains("rod `link` (0.059 m) cannot reach") || said.contains("joint `pivot` (offset along"),
-        "{said}"
-    );
+    let (rod, pivot) = (said.contains("rod `link` (59 mm) cannot reach"), said.contains("joint `pivot` (offset along"));
+    assert!(rod || (pivot && said.contains(" mm")), "{said}");
+}
+
+/// A rod that is 8 mm too short to reach a plate on its seat: the amount has the unit of the study, also where formulas are in metres.
+#[test]
+fn an_open_distance_has_the_unit_of_the_study() {
+    let amount = |mode: &str| -> f64 {
+        let error = parse(&format!(
+            r#"
+units = "{mode}"
+[dimensions]
+t = {{ nominal = 12, tolerance = 0.1, unit = "mm" }}
+[parts.table]
+top = {{ plane = [0, 0, 0], normal = "z" }}
+mark = {{ point = [0, 0, 40] }}
+[parts.plate]
+bottom = {{ plane = [0, 0, 0], normal = "-z" }}
+corner = {{ point = [0, 3, "t"] }}
+[joints]
+seat = {{ on = "table.top", against = "plate.bottom" }}
+rod = {{ rod = ["table.mark", "plate.corner"], length = 20 }}
+[characteristics]
+height = {{ of = "plate.corner", from = "table.top", unit = "mm" }}
+"#
+        ));
+        let said = error.unwrap_err().to_string();
+        let amount = said.split("is off by ").nth(1).and_then(|rest| rest.split(" mm (").next()?.parse().ok());
+        amount.unwrap_or_else(|| panic!("{mode}: {said}"))
+    };
+    let [checked, converted] = ["check", "convert"].map(amount);
+    // The residual is shared by the rod and the seat, and is not above the 8 mm of the rod.
+    assert!(checked > 0.1 && checked < 8.1, "{checked}");
+    close(converted, checked, 1e-3, 0.0);
+}
+
+/// Motions of two parts that are fixed to each other have the same words, and names of their own: the expanded study can be read.
+#[test]
+fn free_motions_alike_have_names_of_their_own() {
+    let study = parse(
+        r#"
+[dimensions]
+t = { nominal = 12, tolerance = 0.1, unit = "mm" }
+[parts.block]
+bore = { axis = [0, 0, 0], along = "z" }
+[parts.shaft]
+journal = { axis = [0, 0, 0], along = "z" }
+end = { frame = [0, 0, 20], z = "z", x = "x" }
+[parts.wheel]
+hub = { frame = [0, 0, 0], z = "z", x = "x" }
+rim = { point = [5, 0, "t"] }
+[joints]
+fit = { hole = "block.bore", pin = "shaft.journal", takes = 4 }
+weld = { rigid = ["shaft.end", "wheel.hub"] }
+[characteristics]
+height = { of = "wheel.rim", from = "shaft.end", along = "z", unit = "mm" }
+"#,
+    )
+    .unwrap();
+    let free = &study.mobility.as_ref().unwrap().free;
+    assert_eq!(free[..], ["shaft, wheel move together", "shaft, wheel move together (2)"]);
+    let expanded = parse(&study.expanded).unwrap();
+    let [own, plain] = [&study, &expanded].map(|study| sensitol::analyze(&study.problem, &study.options).unwrap());
+    assert_eq!(own.characteristics[0].moments, plain.characteristics[0].moments);
 }
 
 /// A link of the crank slider that is too short opens a ball joint.

@@ -187,6 +187,7 @@ fn read(
             measures: Vec::new(),
             length_unit: values.literal_unit(),
         },
+            shown_unit: values.shown_unit(),
         parts: parts.iter().map(|(key, _)| entry("parts", key)).collect(),
         joints: joints.iter().map(|(key, _)| entry("joints", key)).collect(),
         measures: measures.iter().map(|one| entry("characteristics", one.key)).collect(),
@@ -289,10 +290,11 @@ fn unknown_key(tree: &Tree, path: &str, valid: &[&str]) -> Result<(), Fault> {
 fn subject(joint: &PartJoint, equation: &NamedFormula, values: &Values<'_>) -> EquationSubject {
     let name = joint.name.clone();
     match joint.kind {
-        JointKind::Rod => EquationSubject::Rod { name, unit: values.made_unit(true) },
+        JointKind::Rod => EquationSubject::Rod { name, unit: values.shown_unit() },
         _ => {
             let freedom = equation.name.strip_prefix(&format!("{name}: ")).unwrap_or(&equation.name).to_owned();
-            EquationSubject::Joint { name, freedom, rotation: !equation.is_length }
+            let unit = values.shown_unit().filter(|_| equation.is_length);
+            EquationSubject::Joint { name, freedom, rotation: !equation.is_length, unit }
         }
     }
 }

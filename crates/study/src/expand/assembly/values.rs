@@ -114,6 +114,11 @@ impl<'t> Values<'t> {
         self.unit.clone()
     }
 
+    /// Unit of lengths in the study with its size in the unit of formulas; None if the study names none.
+    pub(super) fn shown_unit(&self) -> Option<(String, f64)> {
+        Some((self.unit.clone()?, self.length_factor()))
+    }
+
     /// Unit that a constant length needs in a formula.
     pub(super) fn literal_unit(&self) -> Option<String> {
         self.unknown_unit().filter(|_| self.converts)
