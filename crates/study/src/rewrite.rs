@@ -354,7 +354,7 @@ impl Entry<'_> {
                     "position" | "profile" | "symmetry" | "flatness" | "straightness" | "roundness" | "cylindricity"
                     | "runout" | "total_runout" | "coaxiality" | "concentricity",
                     Value::Number(_) | Value::Integer(_),
-                ) if scales => replace(cut(2.0 * width)),
+                ) if scales => replace(cut(2.0 * self.new.half_band())),
                 ("limits", _) => {
                     let [lower, upper] = self.band(factor);
                     let from = rounded(nominal.1 + lower, width, true);
@@ -434,11 +434,17 @@ impl Entry<'_> {
         edits.push((at..at, text));
     }
 
-    /// Text and value of the new nominal, rounded to a ten thousandth of sigma if it has changed.
+    /// Text and value of the new nominal, rounded to a ten thousandth of sigma if it has changed. The width of a zone does not vary: it is cut
+    /// as tolerances are.
     fn nominal(&self) -> (String, f64) {
         let value = self.new.nominal();
         if self.old.nominal() == value {
             return (write::number(value), value);
+        }
+        if self.new.sigma() == 0.0 {
+            let text = cut(value);
+            let read = text.parse().unwrap_or(value);
+            return (text, read);
         }
         let decimals = 4 - libm::log10(self.new.sigma()).floor() as i32;
         if !(-LONGEST..=LONGEST).contains(&decimals) {

@@ -1,9 +1,10 @@
 //! Examples of assemblies in space beside their plane studies and closed forms.
 
+use sensitol::allocation::{Allocation, AllocationOptions, allocate_written};
 use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol::{Method, analyze};
 use sensitol_study::Study;
-use sensitol_testing::{close, random_points, relative, repository};
+use sensitol_testing::{close, parse, random_points, relative, repository};
 
 fn study(path: &str) -> Study {
     Study::read(&repository(&format!("examples/{path}.toml"))).unwrap()
@@ -58,6 +59,58 @@ fn bodies_have_the_figures_of_the_plane_study() {
             close(row.first.unwrap(), other.first.unwrap(), 1e-8, 1.0);
         }
     }
+}
+
+/// Studies with parts among the examples.
+fn spatial() -> Vec<(String, Study)> {
+    let mut found = Vec::new();
+    for folder in std::fs::read_dir(repository("examples")).unwrap() {
+        for file in std::fs::read_dir(folder.unwrap().path()).unwrap() {
+            let path = file.unwrap().path();
+            if path.extension().is_some_and(|of| of == "toml") && !path.ends_with("tests.toml") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                if text.contains("\n[parts.") {
+                    found.push((path.display().to_string(), Study::read(&path).unwrap()));
+                }
+            }
+        }
+    }
+    assert!(found.len() >= 9, "{}", found.len());
+    found
+}
+
+/// The expanded study of every example in space has the figures and the verdicts of the study, to the last digit: both are one function.
+#[test]
+fn expanded_examples_have_the_same_figures() {
+    for (path, own) in spatial() {
+        let plain = parse(&own.expanded).unwrap_or_else(|error| panic!("{path}: {error}"));
+        let [own, plain] = [&own, &plain].map(|study| analyze(&study.problem, &study.options).unwrap());
+        assert_eq!(own.run.evaluations, plain.run.evaluations, "{path}");
+        assert_eq!(own.characteristics, plain.characteristics, "{path}");
+    }
+}
+
+/// The expanded study of the housing is allocated as the study is: the same tolerances, costs and verdicts, and the same written numbers.
+#[test]
+fn the_expanded_housing_is_allocated_the_same() {
+    let own = study("housing-allocation/study");
+    let plain = parse(&own.expanded).unwrap();
+    let [of_own, of_plain] = [&own, &plain].map(|study| {
+        let written = |problem: &sensitol::Problem| study.written_dimensions(problem);
+        let (task, options) = (study.allocation_task(), AllocationOptions::default());
+        allocate_written(&study.problem, &task, &options, &Run::to_the_end(), &written).unwrap()
+    });
+    assert_eq!(of_own.status, of_plain.status);
+    let rows = |found: &Allocation| -> Vec<(usize, f64, Option<f64>)> {
+        found.tolerances.iter().map(|row| (row.dimension, row.after, row.cost_after)).collect()
+    };
+    assert_eq!(rows(&of_own), rows(&of_plain));
+    let [own, plain] = [(&own, &of_own), (&plain, &of_plain)].map(|(study, found)| {
+        let text = study.rewritten(&found.problem).unwrap().text;
+        let dimensions = parse(&text).unwrap().problem.dimensions().to_vec();
+        dimensions.iter().map(|one| (one.name().to_owned(), one.half_band(), one.nominal())).collect::<Vec<_>>()
+    });
+    assert_eq!(own, plain);
 }
 
 /// The crank slider is its closed form at every point.
