@@ -11,6 +11,7 @@ use crate::entries::file::{CharacteristicEntry, DimensionEntry, StudyFile};
 use crate::entries::spanned::Spanned;
 use crate::entries::vocabulary::REQUIREMENTS;
 use crate::error::{Fault, StudyFault, fault};
+use crate::faults::zone_fault::ZoneFault;
 use crate::source::{Source, in_formula};
 use sensitol::allocation::{CostError, Curve, CurveKind, Made, Offer, Priced};
 use sensitol::assembly::formula::Formula;
@@ -105,6 +106,7 @@ pub(crate) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Res
             continue;
         }
         let (members, parts) = members(file, problem, name, &key)?;
+        once(&groups, name, &members, &key)?;
         let dimension = &problem.dimensions()[members[0]];
         // T of a zone is half its width, which its first dimension has by its share.
         let present = zone_cost::present(entry, name, problem)?.unwrap_or(dimension.half_band());
@@ -117,6 +119,7 @@ pub(crate) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Res
         let key = format!("costs.{}", name.get_ref());
         let at = |found: StudyFault| fault(other.span(), format!("{key}.same_as"), found);
         let (mut members, parts) = members(file, problem, name, &key)?;
+        once(&groups, name, &members, &key)?;
         let target = other.get_ref();
         if target == name.get_ref() {
             return Err(at(StudyFault::SameAsItself { name: target.clone() }));
@@ -148,6 +151,14 @@ pub(crate) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Res
         Priced::new(members, all).map(|priced| Priced { parts, zone, ..priced }.rounding(rounded)).map_err(at)
     };
     groups.into_iter().map(priced).collect()
+}
+
+/// Checks that no dimension of a cost has another one, such as that of its zone.
+fn once(groups: &[Group<'_>], name: &Spanned<String>, members: &[usize], key: &str) -> Result<(), Fault> {
+    let shares = |group: &&Group<'_>| members.iter().any(|member| group.members.contains(member));
+    let Some(other) = groups.iter().find(shares) else { return Ok(()) };
+    let two = ZoneFault::TwoCosts { zone: name.get_ref().clone(), other: other.name.get_ref().clone() };
+    Err(fault(name.span(), key, StudyFault::Zone(two)))
 }
 
 /// Checks that a cost has exactly one form (model, formula, table, `same_as`, processes) and only the numbers of that form.
@@ -280,6 +291,11 @@ fn curve_offers(
         (Some(step), _) => {
             let at = |error| fault(step.span(), format!("{key}.step"), error);
             stepped(&offer, *step.get_ref()).map_err(at)?
+        }
+        (None, Some(grades)) if entry.of.is_some() && dimension.zone().is_none() => {
+            let instead = "a zone has no size: write step or a free tolerance";
+            let apart = StudyFault::DoesNotApply { key: "grades", to: "a zone".into(), instead };
+            return Err(fault(grades.span(), format!("{key}.grades"), apart));
         }
         (None, Some(grades)) => {
             let at = |error| fault(grades.span(), format!("{key}.grades"), error);

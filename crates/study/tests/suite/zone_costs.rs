@@ -441,6 +441,18 @@ fn costs_beyond_a_refinement_and_idle_keys_are_refused() {
         ),
         (
             both,
+        (
+            "position = 0.1",
+            zone("block.bore") + "\n" + &zone("block.bore.at"),
+            "`block.bore.at` has two costs, and `block.bore` is the first",
+            "keep one of them",
+        ),
+        (
+            "length = 25, perpendicularity = 0.1",
+            "\"block.bore\" = { model = \"reciprocal\", b = 0.1, grades = [\"IT5\", \"IT9\"] }".to_owned(),
+            "`grades` means nothing for a position",
+            "has no size: write step or a free tolerance",
+        ),
             "\"block.bore.position\" = { processes = [{ name = \"m\", tolerance = 0.004, cost = 2 }] }".to_owned(),
             "the process `m` of 0.004 lets `perpendicularity` (half width 0.01) exceed `position`",
             "leave it out",
