@@ -35,6 +35,10 @@ pub struct AllocationTask {
     pub losses: Vec<QualityLoss>,
     /// Set-up costs of the machines that processes need.
     pub setups: Vec<SetUp>,
+    /// Groups of dimensions that follow one tolerance each, such as the parts of a zone, for relative costs. They need no offers.
+    pub zones: Vec<Priced>,
+    /// Dimensions that are no tolerances, such as the place of a pin in its hole. They get no relative cost.
+    pub held: Vec<usize>,
 }
 
 /// Objective of an allocation.
@@ -68,6 +72,8 @@ impl AllocationTask {
             goal: Goal::LeastCost,
             losses: Vec::new(),
             setups: Vec::new(),
+            zones: Vec::new(),
+            held: Vec::new(),
         }
     }
 
@@ -153,7 +159,7 @@ impl AllocationTask {
     pub fn relative(self, problem: &Problem, basis: CostBasis) -> Self {
         match basis {
             CostBasis::Given => self,
-            _ => Self { priced: relative(problem), basis, ..self },
+            _ => Self { priced: relative(problem, &self.zones, &self.held), basis, ..self },
         }
     }
 }

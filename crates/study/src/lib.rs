@@ -169,8 +169,10 @@ pub struct Study {
     pub poses: Vec<PartPose>,
     /// Unit of lengths of an assembly in space: the first one that the study names. None if it names none.
     pub length_unit: Option<String>,
-    /// Zones with a cost.
+    /// Zones with a cost, and those without one whose dimensions follow their widths.
     zones: Vec<expand::ZonePlace>,
+    /// Groups of the dimensions of zones, for relative costs.
+    zone_groups: Vec<Priced>,
     /// Facts about an assembly in space; None if the study has none.
     spatial: Option<scene::SpatialFacts>,
     /// Text that the study was read from.
@@ -195,6 +197,14 @@ impl Study {
         AllocationTask::new(self.costs.clone(), requirements)
             .with_losses(self.losses.clone())
             .with_setups(self.setups.clone())
+            .with_zones(self.zone_groups.clone(), self.places_in_joints())
+    }
+
+    /// Dimensions that place a pin in its hole. They are no tolerances.
+    fn places_in_joints(&self) -> Vec<usize> {
+        let Some(facts) = &self.spatial else { return Vec::new() };
+        let all = self.problem.dimensions().iter().enumerate();
+        all.filter(|(_, one)| facts.is_made_by_joint(one.name())).map(|(d, _)| d).collect()
     }
 
     /// Reads a `.toml` or `.json` file.
@@ -329,6 +339,7 @@ impl Study {
             sweep::as_dimension(&mut file, parameter).map_err(|fault| failed(fault.into()))?;
         }
         let built = crate::build::problem::build(&file, &source, data, &expanded.elements).map_err(failed)?;
+        let zone_groups = crate::build::zone_cost::groups(&expanded.free_zones, &built.costs, &built.problem);
         let mut hash = Sha256::new_with_prefix(text.as_bytes());
         built.data.iter().for_each(|bytes| hash.update(bytes));
         Ok(Self {
@@ -343,7 +354,8 @@ impl Study {
             length_unit: expanded.spatial.as_ref().and_then(|facts| facts.length_unit.clone()),
             poses: expanded.spatial.as_ref().map_or_else(Vec::new, |facts| facts.poses.clone()),
             spatial: expanded.spatial,
-            zones: expanded.zones,
+            zone_groups,
+            zones: expanded.zones.into_iter().chain(expanded.free_zones.into_iter().map(|zone| zone.place)).collect(),
             configurations: expanded.configurations,
             costs: built.costs,
             losses: built.losses,

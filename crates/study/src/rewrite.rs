@@ -167,7 +167,7 @@ impl Study {
 
     /// Zone of a dimension with a cost: its place, its name and its new half width. Returns None for other dimensions.
     fn zone_of(&self, d: usize, new: &Dimension) -> Option<(&ZonePlace, &str, f64)> {
-        for group in &self.costs {
+        for group in self.costs.iter().chain(&self.zone_groups) {
             let Some(zone) = &group.zone else { continue };
             let member = group.members.iter().position(|&member| member == d);
             let part = match member {

@@ -61,11 +61,22 @@ pub(in crate::allocation) fn unit(dimension: &Dimension) -> f64 {
     }
 }
 
-/// Relative costs of every dimension, and every position, whose tolerance can change.
-pub(in crate::allocation) fn relative(problem: &Problem) -> Vec<Priced> {
+/// Relative costs of every dimension, every position and every zone, whose tolerance can change. Dimensions that are `held` get none.
+///
+/// A zone has the one cost `T_0/T` for all of its dimensions, since it is about 0 and has no size.
+pub(in crate::allocation) fn relative(problem: &Problem, zones: &[Priced], held: &[usize]) -> Vec<Priced> {
     let dimensions = problem.dimensions();
     let mut groups: Vec<Priced> = Vec::new();
-    for (d, dimension) in dimensions.iter().enumerate() {
+    for zone in zones {
+        let present = zone.present(dimensions);
+        let offer =
+            Curve::reciprocal(0.0, present).and_then(|curve| Offer::between(curve, present / RANGE, present * RANGE));
+        if let Ok(offer) = offer {
+            groups.push(Priced { parts: 1.0, offers: vec![offer], rounded: None, ..zone.clone() });
+        }
+    }
+    let of_zones = |d: usize| zones.iter().any(|zone| zone.members.contains(&d));
+    for (d, dimension) in dimensions.iter().enumerate().filter(|&(d, _)| !held.contains(&d) && !of_zones(d)) {
         let free = dimension.sigma() > 0.0 && unscalable(dimension).is_none();
         if !free || dimension.half_band() <= 0.0 {
             continue;

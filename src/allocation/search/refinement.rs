@@ -28,6 +28,13 @@ struct Broken {
 }
 
 impl AllocationTask {
+    /// Sets the groups that have one tolerance each in relative costs, and the dimensions that have none.
+    #[must_use]
+    pub fn with_zones(mut self, zones: Vec<Priced>, held: Vec<usize>) -> Self {
+        (self.zones, self.held) = (zones, held);
+        self
+    }
+
     /// Checks that some tolerances of every pair of zones keep their refinement.
     pub(in crate::allocation) fn check_refinements(&self) -> Result<(), AllocateError> {
         for (inner, outer) in self.refinements() {

@@ -17,4 +17,4 @@ pub(crate) mod problem;
 pub(crate) mod sweep;
 pub(crate) mod units;
 pub(crate) mod zone;
-mod zone_cost;
+pub(crate) mod zone_cost;

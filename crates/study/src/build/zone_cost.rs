@@ -7,7 +7,8 @@ use crate::entries::file::StudyFile;
 use crate::entries::named_entries::Entries;
 use crate::entries::spanned::Spanned;
 use crate::error::{Fault, StudyFault, fault};
-use sensitol::allocation::{PricedZone, ZonePart};
+use crate::expand::ZoneMembers;
+use sensitol::allocation::{Priced, PricedZone, ZonePart};
 use sensitol::problem::Problem;
 use sensitol_numeric::names::nearest;
 
@@ -42,6 +43,27 @@ pub(crate) fn members(of: &Spanned<Entries<f64>>, problem: &Problem, key: &str) 
 fn named(problem: &Problem, name: &str) -> Vec<usize> {
     let all = problem.dimensions().iter().enumerate();
     all.filter(|(_, one)| one.name() == name || one.zone() == Some(name)).map(|(d, _)| d).collect()
+}
+
+/// Groups of zones for relative costs: those with a cost of their own, and those of zones without one.
+pub(crate) fn groups(free: &[ZoneMembers], costs: &[Priced], problem: &Problem) -> Vec<Priced> {
+    let mut found: Vec<Priced> = costs.iter().filter(|group| group.zone.is_some()).cloned().collect();
+    for zone in free {
+        let (mut members, mut shares) = (Vec::new(), Vec::new());
+        for (name, share) in &zone.members {
+            for d in named(problem, name).into_iter().filter(|&d| problem.dimensions()[d].sigma() > 0.0) {
+                members.push(d);
+                shares.push(*share);
+            }
+        }
+        let Some(&first) = members.first() else { continue };
+        let unit = problem.dimensions()[first].unit().filter(|_| shares[0] == 1.0).map(str::to_owned);
+        let part = ZonePart { name: zone.place.cost.clone(), unit, members: 0..members.len(), cost: None };
+        let within = zone.within.clone();
+        let zone = PricedZone { parts: vec![part], shares, widths: Vec::new(), within };
+        found.push(Priced { members, parts: 1.0, offers: Vec::new(), rounded: None, zone: Some(zone) });
+    }
+    found
 }
 
 /// Checks that `within` names the cost of another zone, and that no end of a zone is held.

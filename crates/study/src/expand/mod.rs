@@ -41,6 +41,8 @@ pub(super) struct Expanded {
     open_zones: Vec<OpenZone>,
     /// Zones with a cost.
     pub(super) zones: Vec<ZonePlace>,
+    /// Zones without a cost whose dimensions follow their widths.
+    pub(super) free_zones: Vec<ZoneMembers>,
     /// Dimensions without a tolerance to which a general one would apply, with half of it. Empty if the study has general tolerances.
     general: Vec<(String, f64)>,
 }
@@ -71,6 +73,15 @@ impl ZonePlace {
         let keys = self.path.iter().filter(|key| *key != "patterns");
         keys.map(String::as_str).collect::<Vec<_>>().join(".")
     }
+}
+
+/// Zone whose dimensions follow one width.
+pub(super) struct ZoneMembers {
+    pub(super) place: ZonePlace,
+    /// Names of the dimensions, with their half bands per half width.
+    pub(super) members: Vec<(String, f64)>,
+    /// Full name of the zone that this one refines; None if it refines none.
+    pub(super) within: Option<String>,
 }
 
 /// A hole with a pin that may be larger than it.
@@ -105,6 +116,7 @@ pub(super) fn expand(
         spatial: None,
         open_zones: Vec::new(),
         zones: Vec::new(),
+        free_zones: Vec::new(),
         general: Vec::new(),
     };
     configurations::expand(&mut expanded, configuration, data)?;

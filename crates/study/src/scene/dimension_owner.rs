@@ -44,6 +44,11 @@ impl SpatialFacts {
         }
     }
 
+    /// True if a joint has made a dimension, such as the place of a pin in its hole.
+    pub(crate) fn is_made_by_joint(&self, dimension: &str) -> bool {
+        matches!(self.maker(dimension), Some(DimensionOwner::Joint(_)))
+    }
+
     /// Entry of the assembly that has made a dimension, such as a zone or a float.
     fn maker(&self, dimension: &str) -> Option<DimensionOwner> {
         let is_of = |name: &str| {

@@ -1,7 +1,8 @@
 //! Costs of zones in space: allocations against Lagrange's conditions, the study written anew, and wrong costs.
 
-use sensitol::allocation::{Allocation, AllocationOptions, Status, allocate};
+use sensitol::allocation::{Allocation, AllocationOptions, CostBasis, Status, allocate, allocate_written};
 use sensitol::analyze;
+use sensitol::assembly::Run;
 use sensitol_study::Study;
 /// Relative difference.
 fn relative(a: f64, b: f64) -> f64 {
@@ -372,6 +373,40 @@ fn a_height_along_the_axes_of_a_pattern_is_no_lever() {
     assert!(relative(plain, 0.1 / 50.0 / 2f64.sqrt()) < 1e-12 && plain == formula, "{plain}, {formula}");
 }
 
+/// With relative costs a zone is one tolerance with one cost, and the place of a pin in its hole is none.
+#[test]
+fn relative_costs_are_of_zones_and_not_of_floats() {
+    let text = text(
+        "diameter = \"D\", length = 25, position = 0.1",
+        "D = { nominal = 20, tolerance = [0, 0.02], unit = \"mm\" }",
+        "",
+    );
+    let text = text.replace(
+        "pin = { axis = [0, 0, 0], along = \"x\" }",
+        "pin = { axis = [0, 0, 0], along = \"x\", diameter = 19.98 }",
+    );
+    let study = read(&text.replace("takes = 4", "takes = 4, float = \"disc\"").replace("[costs]", ""));
+    let name = |d: usize| study.problem.dimensions()[d].name().to_owned();
+    let task = study.allocation_task().relative(&study.problem, CostBasis::ToleranceUnit);
+    let groups: Vec<Vec<String>> =
+        task.priced.iter().map(|group| group.members.iter().map(|&d| name(d)).collect()).collect();
+
+    assert_eq!(groups[0].len(), 4, "{groups:?}");
+    assert!(groups[0].iter().all(|name| name.starts_with("block.bore.")), "{groups:?}");
+    let single: Vec<&str> = groups[1..].iter().map(|group| group[0].as_str()).collect();
+    assert_eq!(single, ["t", "D"]);
+    // The new width stands in the feature.
+    let (options, written) =
+        (AllocationOptions::default(), |problem: &sensitol::Problem| study.written_dimensions(problem));
+    let found = allocate_written(&study.problem, &task, &options, &Run::to_the_end(), &written).unwrap();
+    let zone = found.tolerances.iter().find(|row| row.zone.is_some()).unwrap();
+    assert_eq!(zone.zone.as_ref().unwrap().name, "block.bore.position");
+    let again = read(&study.rewritten(&found.problem).unwrap().text);
+    for (new, old) in again.problem.dimensions().iter().zip(found.problem.dimensions()) {
+        assert!(relative(new.half_band().max(1e-300), old.half_band().max(1e-300)) < 1e-5, "{}", new.name());
+    }
+}
+
 /// Holds that every study is refused at its line of `[costs]`, with the words of what is wrong and of the remedy.
 fn refuses(cases: &[(&str, String, &str, &str)]) {
     for (bore, costs, what, remedy) in cases {
@@ -405,6 +440,18 @@ fn wrong_costs_name_the_line_and_the_remedy() {
             zone("block.bore") + "\n" + &zone("block.bore.position"),
             "has two costs",
             "keep one of them",
+        ),
+        (
+            "position = 0.1",
+            zone("block.bore") + "\n" + &zone("block.bore.at"),
+            "`block.bore.at` has two costs, and `block.bore` is the first",
+            "keep one of them",
+        ),
+        (
+            "length = 25, perpendicularity = 0.1",
+            "\"block.bore\" = { model = \"reciprocal\", b = 0.1, grades = [\"IT5\", \"IT9\"] }".to_owned(),
+            "`grades` means nothing for a position",
+            "has no size: write step or a free tolerance",
         ),
     ];
     refuses(&cases);
@@ -441,18 +488,6 @@ fn costs_beyond_a_refinement_and_idle_keys_are_refused() {
         ),
         (
             both,
-        (
-            "position = 0.1",
-            zone("block.bore") + "\n" + &zone("block.bore.at"),
-            "`block.bore.at` has two costs, and `block.bore` is the first",
-            "keep one of them",
-        ),
-        (
-            "length = 25, perpendicularity = 0.1",
-            "\"block.bore\" = { model = \"reciprocal\", b = 0.1, grades = [\"IT5\", \"IT9\"] }".to_owned(),
-            "`grades` means nothing for a position",
-            "has no size: write step or a free tolerance",
-        ),
             "\"block.bore.position\" = { processes = [{ name = \"m\", tolerance = 0.004, cost = 2 }] }".to_owned(),
             "the process `m` of 0.004 lets `perpendicularity` (half width 0.01) exceed `position`",
             "leave it out",

@@ -6,9 +6,9 @@ use std::ops::Range;
 
 use super::entry::{ZONES, ZoneKind, ZonedFeature};
 use super::frame::number;
-use super::lines::{Lines, MadeZone};
+use super::lines::{Lines, MadeZone, UNIT};
 use crate::error::{Fault, Faults, StudyFault, fault};
-use crate::expand::{Tree, Value, ZonePlace};
+use crate::expand::{Tree, Value, ZoneMembers, ZonePlace};
 use crate::faults::zone_fault::{RefinedChoice, ZoneFault};
 use crate::tree::Key;
 use sensitol_numeric::names::nearest;
@@ -114,6 +114,47 @@ fn named(key: &Key, zoned: &[Zoned]) -> Result<Option<ZoneCost>, Fault> {
         }
         None => Ok(None),
     }
+}
+
+/// Zones without a cost whose dimensions follow their widths by numbers alone.
+///
+/// A zone with a bonus is left out, since its width is a number in formulas, and so is each of two zones of a feature if the other one has no
+/// dimensions that follow it: the tighter zone stays within the other.
+pub(super) fn free(study: &Tree, features: &[ZonedFeature<'_>], costs: &[ZoneCost], lines: &Lines) -> Vec<ZoneMembers> {
+    let follows = |made: &MadeZone| {
+        let plain = !made.has_formula && !made.is_uneven && !made.members.is_empty();
+        plain
+            && made.label.half.is_some_and(|half| half > 0.0)
+            && !made.members.iter().any(|(name, _)| name.ends_with(UNIT))
+    };
+    let with_cost = |name: &str| costs.iter().any(|cost| cost.zone == name);
+    let of = |name: &str| lines.zones.iter().find(|made| made.label.name == name).filter(|made| follows(made));
+    let mut found = Vec::new();
+    for zoned in zoned(study, features) {
+        let full = |key: &str| format!("{}.{key}", zoned.name);
+        let feature = features.iter().find(|feature| feature.full() == zoned.name);
+        let kind =
+            |key: &str| feature.and_then(|of| of.zones.iter().find(|zone| zone.key == key)).map(|zone| zone.kind);
+        for &key in zoned.keys.iter().filter(|key| !with_cost(&full(key))) {
+            let Some(made) = of(&full(key)) else { continue };
+            let is_bounding = |other: &&&str| {
+                let pair = [kind(key), kind(other)].map(|kind| kind == Some(ZoneKind::Orientation));
+                pair[0] != pair[1] && kind(key) != Some(ZoneKind::Form) && kind(other) != Some(ZoneKind::Form)
+            };
+            let other = zoned.keys.iter().find(is_bounding).map(|other| full(other));
+            if other.as_ref().is_some_and(|other| with_cost(other) || of(other).is_none()) {
+                continue;
+            }
+            let half = made.label.half.unwrap_or(1.0);
+            let path = zoned.path.iter().cloned().chain([key.to_owned()]).collect();
+            found.push(ZoneMembers {
+                place: ZonePlace { cost: full(key), path },
+                members: made.members.iter().map(|(name, band)| (name.clone(), band / half)).collect(),
+                within: other.filter(|_| kind(key) == Some(ZoneKind::Orientation)),
+            });
+        }
+    }
+    found
 }
 
 /// Writes the dimensions of every zone with a cost into its line of `[costs]`, and the zones that it refines.

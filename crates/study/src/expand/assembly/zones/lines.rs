@@ -8,7 +8,7 @@ use crate::expand::{Expanded, Origin, Tree, Value, quoted};
 use crate::tree::Key;
 
 /// Ending of the name of a place on a zone of radius 1.
-const UNIT: &str = ".unit";
+pub(super) const UNIT: &str = ".unit";
 /// Ending of the name of a place in the whole zone, of which other deviations take a part.
 const WHOLE: &str = ".whole";
 

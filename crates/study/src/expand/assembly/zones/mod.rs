@@ -63,6 +63,7 @@ pub(in crate::expand) fn expand(expanded: &mut Expanded) -> Result<Option<LineOw
     faults.none()?;
     expanded.zones = cost::write(&mut expanded.tree, costs, &features, &lines)?;
     Ok(Some(lines.write(expanded)))
+    expanded.free_zones = cost::free(&study, &features, &costs, &lines);
 }
 
 /// Deviations of the features of a part, in their order.
