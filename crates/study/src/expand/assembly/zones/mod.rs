@@ -7,6 +7,7 @@ mod datums;
 mod deviation;
 mod entry;
 mod float;
+mod form;
 pub(super) mod frame;
 mod lines;
 mod pattern;
@@ -81,6 +82,7 @@ fn part(
         check_axis(feature, &datums)?;
         let axis = datums.iter().find(|datum| datum.kind == FeatureKind::Axis);
         let facts = DatumFacts {
+        form::check(study, feature, lines.length_unit().as_deref())?;
             tilts: datums::tilts(feature, &datums),
             axis: axis.and_then(|datum| Some((datum.name, datum.frame?))),
             material: (materials.iter())
