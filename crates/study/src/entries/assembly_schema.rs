@@ -61,6 +61,7 @@ fn zones() -> Vec<(&'static str, Value)> {
             json!({ "description": "Part of the zone out of the material, of a plane.", "type": "number", "minimum": 0 }),
         ),
     ];
+    let orientation = [("datums", name("Datums of the orientation, if they are not those of the feature: \"A D\"."))];
     let form = [(
         "side",
         json!({ "description": "All of the zone lies out of the material.", "type": "string", "enum": ["out"] }),
@@ -78,9 +79,9 @@ fn zones() -> Vec<(&'static str, Value)> {
         ("concentricity", zone("The same as coaxiality.", &[])),
         ("runout", zone("Runout of an axis, point or round face about the datum axis.", &[])),
         ("total_runout", zone("The same as runout, of the whole surface.", &[])),
-        ("perpendicularity", zone("Perpendicularity: a diameter for an axis, a width for a plane.", &[])),
-        ("parallelism", zone("Parallelism.", &[])),
-        ("angularity", zone("Angularity.", &[])),
+        ("perpendicularity", zone("Perpendicularity: a diameter for an axis, a width for a plane.", &orientation)),
+        ("parallelism", zone("Parallelism.", &orientation)),
+        ("angularity", zone("Angularity.", &orientation)),
         ("flatness", zone("Flatness: it moves the face at a contact, not its frame.", &form)),
         ("straightness", zone("Straightness, likewise.", &form)),
         ("roundness", zone("Roundness, likewise.", &form)),

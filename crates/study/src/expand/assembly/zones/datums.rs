@@ -3,6 +3,8 @@
 //! A plane fixes two tilts and the distance along its normal, an axis two tilts and two distances. Each datum fixes what those before it have
 //! left free. A feature that is measured from a datum with a zone of its own moves with that datum, by the freedoms that the datum fixes.
 
+use std::ops::Range;
+
 use super::deviation::Torsor;
 use super::entry::{ZoneKind, ZonedFeature};
 use super::frame::{ConstantFrame, cross, dot, number, unit};
@@ -90,14 +92,36 @@ impl Fixed {
     }
 }
 
+/// Names of datums with their place, and the key that they stand at.
+pub(super) struct DatumList<'f> {
+    pub(super) names: &'f [&'f str],
+    pub(super) span: &'f Range<usize>,
+    pub(super) key: String,
+}
+
+impl<'f> DatumList<'f> {
+    /// Datums of a feature.
+    pub(super) fn of(feature: &'f ZonedFeature<'_>) -> Self {
+        Self { names: &feature.datums, span: &feature.datum_span, key: "datums".to_owned() }
+    }
+
+    /// Datums of the orientation of a feature. Returns None if it has none of its own.
+    pub(super) fn of_orientation(feature: &'f ZonedFeature<'_>) -> Option<Self> {
+        let (names, span) = feature.orientation_datums.as_ref()?;
+        let zone = feature.zone(&[ZoneKind::Orientation])?;
+        Some(Self { names, span, key: format!("{}.datums", zone.key) })
+    }
+}
+
 /// Features of a part that a feature names as its datums.
 pub(super) fn named<'f, 't>(
     feature: &ZonedFeature<'t>,
+    datums: &DatumList<'_>,
     of_part: &[&'f ZonedFeature<'t>],
 ) -> Result<Vec<&'f ZonedFeature<'t>>, Fault> {
-    let refused = |found: StudyFault| Err(at(&feature.owner, "datums", &feature.datum_span, found));
+    let refused = |found: StudyFault| Err(at(&feature.owner, &datums.key, datums.span, found));
     let mut found = Vec::new();
-    for name in &feature.datums {
+    for name in datums.names {
         if *name == feature.name {
             return refused(ZoneFault::DatumOfItself { feature: feature.name.to_owned() }.into());
         }
@@ -112,11 +136,12 @@ pub(super) fn named<'f, 't>(
             }
         }
     }
+    check(feature, datums, &found)?;
     Ok(found)
 }
 
 /// Checks that every datum fixes something.
-pub(super) fn check(feature: &ZonedFeature<'_>, datums: &[&ZonedFeature<'_>]) -> Result<(), Fault> {
+fn check(feature: &ZonedFeature<'_>, names: &DatumList<'_>, datums: &[&ZonedFeature<'_>]) -> Result<(), Fault> {
     let mut fixed = Fixed::default();
     for (place, datum) in datums.iter().enumerate() {
         // A direction that varies is not examined.
@@ -124,7 +149,7 @@ pub(super) fn check(feature: &ZonedFeature<'_>, datums: &[&ZonedFeature<'_>]) ->
         if !fixed.add(datum.kind, frame) {
             let before = datums[..place].iter().map(|datum| datum.name.to_owned()).collect();
             let found = ZoneFault::IdleDatum { datum: datum.name.to_owned(), before };
-            return Err(at(&feature.owner, "datums", &feature.datum_span, found.into()));
+            return Err(at(&feature.owner, &names.key, names.span, found.into()));
         }
     }
     Ok(())
@@ -132,7 +157,8 @@ pub(super) fn check(feature: &ZonedFeature<'_>, datums: &[&ZonedFeature<'_>]) ->
 
 /// Zones of a feature whose datums leave a displacement or a tilt free that the zone bounds. Zones of form need no datums.
 pub(super) fn open_zones(feature: &ZonedFeature<'_>, of_part: &[&ZonedFeature<'_>]) -> Vec<OpenZone> {
-    let (Ok(datums), Some(own)) = (named(feature, of_part), &feature.frame) else { return Vec::new() };
+    let named_datums = named(feature, &DatumList::of(feature), of_part);
+    let (Ok(datums), Some(own)) = (named_datums, &feature.frame) else { return Vec::new() };
     let mut fixed = Fixed::default();
     for datum in &datums {
         // A direction that varies is not examined.
@@ -150,6 +176,7 @@ pub(super) fn open_zones(feature: &ZonedFeature<'_>, of_part: &[&ZonedFeature<'_
     for zone in &feature.zones {
         let open: Vec<String> = match zone.kind {
             ZoneKind::Form => continue,
+            ZoneKind::Orientation if feature.orientation_datums.is_some() => continue,
             _ if datums.is_empty() => vec!["all of it".to_owned()],
             ZoneKind::Location => (bounded.iter())
                 .filter(|&&along| fixed.displacements.outside(along).iter().any(|part| part.abs() > LEFT))
@@ -219,10 +246,19 @@ pub(super) struct PartTorsor {
     pub(super) tilt: [Terms; 3],
 }
 
+/// Indices of the datums of a feature, and of those of its orientation if it has its own.
+#[derive(Debug, Default)]
+pub(super) struct DatumIndices {
+    pub(super) own: Vec<usize>,
+    pub(super) orientation: Option<Vec<usize>>,
+}
+
 /// Adds the deviations that features take over from their datums. Own deviations are in the order of the features.
+///
+/// A feature whose orientation has its own datums tilts with these, and its place moves with the others.
 pub(super) fn carried(
     features: &[&ZonedFeature<'_>],
-    datums: &[Vec<usize>],
+    datums: &[DatumIndices],
     own: Vec<Torsor>,
     lines: &Lines,
 ) -> Result<Vec<Torsor>, Fault> {
@@ -239,7 +275,7 @@ pub(super) fn carried(
 fn carry(
     feature: usize,
     features: &[&ZonedFeature<'_>],
-    datums: &[Vec<usize>],
+    datums: &[DatumIndices],
     own: &mut [Torsor],
     (done, open): (&mut Vec<bool>, &mut Vec<bool>),
     lines: &Lines,
@@ -248,30 +284,17 @@ fn carry(
         return Ok(());
     }
     open[feature] = true;
-    let of = features[feature];
-    let mut fixed = Fixed::default();
-    let mut taken = PartTorsor::default();
-    for &datum in &datums[feature] {
+    let (of, named) = (features[feature], &datums[feature]);
+    for &datum in named.own.iter().chain(named.orientation.iter().flatten()) {
         if open[datum] {
             let found = ZoneFault::DatumCycle { feature: of.name.to_owned(), datum: features[datum].name.to_owned() };
             return Err(at(&of.owner, "datums", &of.datum_span, found.into()));
         }
         carry(datum, features, datums, own, (done, open), lines)?;
-        let other = features[datum];
-        let varying = |feature: &ZonedFeature<'_>| {
-            let found = ZoneFault::VaryingDirection { feature: feature.full() };
-            at(&of.owner, "datums", &of.datum_span, found.into())
-        };
-        if own[datum].is_zero() {
-            other.frame.iter().for_each(|frame| {
-                fixed.add(other.kind, frame);
-            });
-            continue;
-        }
-        let frame = other.frame.as_ref().ok_or_else(|| varying(other))?;
-        let lever = lever(of, other, lines);
-        take(&mut taken, &own[datum], frame, &fixed, &lever);
-        fixed.add(other.kind, frame);
+    }
+    let mut taken = taken_over(of, &named.own, features, own, lines)?;
+    if let Some(orientation) = &named.orientation {
+        taken.tilt = taken_over(of, orientation, features, own, lines)?.tilt;
     }
     if !(taken.shift.iter().chain(&taken.tilt).all(Vec::is_empty)) {
         let Some(frame) = of.frame.as_ref() else {
@@ -283,6 +306,35 @@ fn carry(
     open[feature] = false;
     done[feature] = true;
     Ok(())
+}
+
+/// Deviation that a feature takes over from datums in their order.
+fn taken_over(
+    of: &ZonedFeature<'_>,
+    datums: &[usize],
+    features: &[&ZonedFeature<'_>],
+    own: &[Torsor],
+    lines: &Lines,
+) -> Result<PartTorsor, Fault> {
+    let mut fixed = Fixed::default();
+    let mut taken = PartTorsor::default();
+    for &datum in datums {
+        let other = features[datum];
+        if own[datum].is_zero() {
+            other.frame.iter().for_each(|frame| {
+                fixed.add(other.kind, frame);
+            });
+            continue;
+        }
+        let Some(frame) = other.frame.as_ref() else {
+            let found = ZoneFault::VaryingDirection { feature: other.full() };
+            return Err(at(&of.owner, "datums", &of.datum_span, found.into()));
+        };
+        let lever = lever(of, other, lines);
+        take(&mut taken, &own[datum], frame, &fixed, &lever);
+        fixed.add(other.kind, frame);
+    }
+    Ok(taken)
 }
 
 /// Coordinates of a feature from its datum, as texts; None for 0.

@@ -98,6 +98,8 @@ pub(super) struct ZonedFeature<'t> {
     pub(super) zones: Vec<ZoneEntry<'t>>,
     pub(super) datums: Vec<&'t str>,
     pub(super) datum_span: Range<usize>,
+    /// Datums of the orientation with their place; None if they are those of the feature.
+    pub(super) orientation_datums: Option<(Vec<&'t str>, Range<usize>)>,
     pub(super) extent: FeatureExtent,
     /// Constant directions; None if one varies.
     pub(super) frame: Option<ConstantFrame>,
@@ -154,6 +156,11 @@ fn feature<'t>(
         }
         zones.push(zone);
     }
+    let orientation = zones.iter().find(|zone| zone.kind == ZoneKind::Orientation);
+    let orientation_datums = match orientation.and_then(|zone| Some((zone.key, zone.table?))) {
+        Some((key, table)) if table.get("datums").is_some() => Some(datums(table, &format!("{path}.{key}"))?),
+        _ => None,
+    };
     let (datums, datum_span) = datums(tree, &path)?;
     Ok(ZonedFeature {
         part: &part.name,
@@ -164,6 +171,7 @@ fn feature<'t>(
         zones,
         datums,
         datum_span,
+        orientation_datums,
         extent: extent(study, tree, kind, &path)?,
         frame: ConstantFrame::of(tree, direction),
     })
@@ -203,7 +211,8 @@ pub(super) fn zone<'t>(
             let own: &[&str] = match kind {
                 ZoneKind::Location => &["hole", "pin", "at", "most", "outward"],
                 ZoneKind::Form => &["side"],
-                ZoneKind::Eccentricity | ZoneKind::Orientation => &[],
+                ZoneKind::Orientation => &["datums"],
+                ZoneKind::Eccentricity => &[],
             };
             let valid: Vec<&str> =
                 ["zone", "distribution", "sigmas", "cp"].into_iter().chain(own.iter().copied()).collect();

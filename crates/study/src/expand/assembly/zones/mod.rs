@@ -17,6 +17,7 @@ use crate::error::{Fault, Faults, StudyFault};
 use crate::expand::{Expanded, Tree, Value};
 use crate::faults::zone_fault::ZoneFault;
 use crate::tree::Key;
+use datums::{DatumIndices, DatumList};
 use deviation::Torsor;
 use entry::{MORE, ZONES, ZoneKind, ZonedFeature};
 use lines::{LineOwners, Lines, at};
@@ -62,9 +63,9 @@ pub(in crate::expand) fn expand(expanded: &mut Expanded) -> Result<Option<LineOw
     }
     float::expand(expanded, &study, &features, &mut lines, &mut faults);
     faults.none()?;
+    expanded.free_zones = cost::free(&study, &features, &costs, &lines);
     expanded.zones = cost::write(&mut expanded.tree, costs, &features, &lines)?;
     Ok(Some(lines.write(expanded)))
-    expanded.free_zones = cost::free(&study, &features, &costs, &lines);
 }
 
 /// Deviations of the features of a part, in their order.
@@ -77,13 +78,14 @@ fn part(
 ) -> Result<Vec<Torsor>, Fault> {
     let (mut own, mut indices) = (Vec::new(), Vec::new());
     for feature in features {
-        let datums = datums::named(feature, features)?;
-        datums::check(feature, &datums)?;
+        let datums = datums::named(feature, &DatumList::of(feature), features)?;
+        let orientation = DatumList::of_orientation(feature);
+        let orientation = orientation.map(|names| datums::named(feature, &names, features)).transpose()?;
         check_axis(feature, &datums)?;
+        form::check(study, feature, lines.length_unit().as_deref())?;
         let axis = datums.iter().find(|datum| datum.kind == FeatureKind::Axis);
         let facts = DatumFacts {
-        form::check(study, feature, lines.length_unit().as_deref())?;
-            tilts: datums::tilts(feature, &datums),
+            tilts: datums::tilts(feature, orientation.as_ref().unwrap_or(&datums)),
             axis: axis.and_then(|datum| Some((datum.name, datum.frame?))),
             material: (materials.iter())
                 .find(|(name, ..)| *name == feature.full())
@@ -91,7 +93,8 @@ fn part(
         };
         own.push(torsor::torsor(feature, &facts, lines)?);
         let index = |datum: &&ZonedFeature<'_>| features.iter().position(|other| other.name == datum.name);
-        indices.push(datums.iter().filter_map(index).collect());
+        let places = |datums: &[&ZonedFeature<'_>]| datums.iter().filter_map(index).collect();
+        indices.push(DatumIndices { own: places(&datums), orientation: orientation.as_deref().map(places) });
     }
     pattern::patterns(study, key, tree, features, &mut own, lines)?;
     datums::carried(features, &indices, own, lines)
