@@ -86,6 +86,11 @@ fn zones() -> Vec<(&'static str, Value)> {
         ("straightness", zone("Straightness, likewise.", &form)),
         ("roundness", zone("Roundness, likewise.", &form)),
         ("cylindricity", zone("Cylindricity, likewise.", &form)),
+        (
+            "targets",
+            json!({ "description": "Datum targets of a plane, one to three places along its x and y: a joint touches there.", "type": "array",
+                "items": { "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 }, "minItems": 1, "maxItems": 3 }),
+        ),
         ("datums", name("Features of this part from which the zones are measured, in their order: \"A B C\".")),
         ("length", quantity("The length over which the zones hold: of an axis, or across the tilt of a face.")),
         ("size", size),
@@ -173,7 +178,7 @@ pub(crate) fn joints(_: &mut SchemaGenerator) -> Schema {
             "type": "object",
             "properties": {
                 "on": feature("The plane of a contact."),
-                "against": feature("The plane, axis or point that lies on it."),
+                "against": feature("The plane, axis or point that lies on it; with `press` a plane with flatness and size, which touches at its corners."),
                 "hole": feature("The axis of a hole."),
                 "pin": feature("The axis of the pin in a hole or slot."),
                 "slot": feature("The frame of a slot: x along it, y across it."),

@@ -125,6 +125,7 @@ pub(super) fn expand(
     expanded.general = general::applicable(&expanded.tree);
     general::expand(&mut expanded)?;
     groups::expand(&mut expanded)?;
+    assembly::face_points::expand(&mut expanded)?;
     let written = WrittenAssembly::of(&expanded.tree);
     let owners = assembly::zones::expand(&mut expanded)?;
     geometry::fasteners(&mut expanded)?;

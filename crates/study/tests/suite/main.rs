@@ -12,6 +12,7 @@ mod scene;
 mod schema;
 mod spatial;
 mod spatial_analyses;
+mod spatial_datums;
 mod spatial_examples;
 mod spatial_faults;
 mod spatial_mobility;

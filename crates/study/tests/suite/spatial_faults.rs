@@ -224,6 +224,20 @@ fn every_wrong_press_names_its_remedy() {
         (
             stand(&format!("{four}, press = \"-z\", against = \"table.bottom\"")),
             height,
+            "joints.stand.targets",
+            "`against` and `targets`",
+            "keep one",
+        ),
+        (
+            stand("press = \"-z\", against = \"table.bottom\""),
+            height,
+            "parts.table.bottom",
+            "`size` is missing",
+            "size = [60, 40]",
+        ),
+        (
+            stand("press = \"-z\", against = \"table.leg1\""),
+            height,
             "joints.stand",
             "`press` and `against`",
             "a plane with flatness and size, or write the contact points as `targets`",
@@ -313,6 +327,7 @@ mark = {{ point = [0, 0, 0] }}
 [parts.table]
 at = [0, 0, 70]
 bottom = {{ plane = [0, 0, "-h"], normal = "-z" }}
+plate = {{ plane = [0, 0, "-h"], normal = "-z", size = [60, 40] }}
 middle = {{ point = [0, 0, "-h"] }}
 leg1 = {{ point = [-30, -20, "-h"] }}
 leg2 = {{ point = [30, -20, "-h"] }}

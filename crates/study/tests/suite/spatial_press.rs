@@ -79,6 +79,16 @@ fn one_realisation_is_that_of_a_linear_program() {
 }
 
 /// Value of the first characteristic at these dimensions.
+/// Values of all characteristics at a point.
+fn all_at(study: &Study, point: &[f64]) -> Vec<f64> {
+    use sensitol::assembly::{Points, Request, Responses, Run};
+    let outputs: Vec<usize> = (0..study.problem.characteristics().len()).collect();
+    let points = Points::from_rows(&[point.to_vec()]);
+    let mut found = Responses::open(1, outputs.len());
+    study.problem.function().evaluate(&Request::values(&points, &outputs), &Run::to_the_end(), &mut found);
+    outputs.iter().map(|&output| found.value(0, output).unwrap()).collect()
+}
+
 fn at(study: &Study, point: &[f64]) -> f64 {
     use sensitol::assembly::{Points, Request, Responses, Run};
     let points = Points::from_rows(&[point.to_vec()]);
@@ -192,16 +202,6 @@ fn auto_samples_and_names_the_sets_of_contacts() {
     assert!(refused.contains("`height` has no derivative by `h1`"), "{refused}");
 }
 
-#[test]
-fn the_expanded_study_gives_the_same_figures() {
-    let study = parse(&read("tests/data/assembly3d/four-legs.toml")).unwrap();
-    let expanded = parse(&study.expanded).unwrap();
-    for heights in [[0.4, -0.2, 0.1, 0.9], [1.0, 0.2, 0.1, -0.5]] {
-        assert_eq!(at(&study, &heights), at(&expanded, &heights));
-    }
-    // Its warnings name the joint and its contacts too.
-    let [own, plain] = [&study, &expanded].map(|study| analyze(&study.problem, &Method::Auto.into()).unwrap());
-    shares(&plain.warnings, false);
 /// A table whose legs end at the origin of all heights is the same table: its nominal state is no dead centre, whatever the origin.
 #[test]
 fn a_tie_at_the_origin_is_no_dead_centre() {
@@ -224,7 +224,101 @@ fn a_tie_at_the_origin_is_no_dead_centre() {
     close(high.sigma(), low.sigma(), 1e-11, 0.0);
 }
 
+#[test]
+fn the_expanded_study_gives_the_same_figures() {
+    let study = parse(&read("tests/data/assembly3d/four-legs.toml")).unwrap();
+    let expanded = parse(&study.expanded).unwrap();
+    for heights in [[0.4, -0.2, 0.1, 0.9], [1.0, 0.2, 0.1, -0.5]] {
+        assert_eq!(at(&study, &heights), at(&expanded, &heights));
+    }
+    // Its warnings name the joint and its contacts too.
+    let [own, plain] = [&study, &expanded].map(|study| analyze(&study.problem, &Method::Auto.into()).unwrap());
+    shares(&plain.warnings, false);
     assert_eq!(own.warnings, plain.warnings);
+}
+
+/// Text of a block with a face of 600 by 400 on a floor. `face` holds further keys of the face, `joint` those of the joint.
+fn block(units: &str, face: &str, joint: &str) -> String {
+    format!(
+        r#"
+units = "{units}"
+[dimensions]
+t = {{ nominal = 50, unit = "mm" }}
+[parts.floor]
+top = {{ plane = [0, 0, 0], normal = "z" }}
+[parts.block]
+at = [0, 0, 0]
+foot = {{ plane = [0, 0, 0], normal = "-z", x = "x", {face} }}
+middle = {{ point = [0, 0, 0] }}
+weight = {{ point = [80, -30, 0] }}
+lid = {{ point = [150, -80, "t"] }}
+[joints]
+stand = {{ on = "floor.top", against = "block.foot", {joint} }}
+[characteristics]
+height = {{ of = "block.middle", from = "floor.top", unit = "mm" }}
+"#
+    )
+}
+
+/// The four corners of a face with form are four legs: its middle has the moments of the greater of the two diagonals, with sigma a sixth of
+/// the flatness at every corner.
+#[test]
+fn a_face_with_form_stands_on_its_corners() {
+    let case = oracle("four-legs");
+    let expected = |name: &str| case["expect"][name].as_f64().unwrap();
+    for units in ["check", "convert"] {
+        let study = parse(&block(units, "size = [600, 400], flatness = 3", "press = [0, 0, -1]")).unwrap();
+        // The corners are around the face: those of one diagonal are the first and the third.
+        for forms in [[0.4, -0.2, 0.1, 0.9], [1.0, 0.2, 0.1, -0.5]] {
+            let diagonals = [0.5 * (forms[0] + forms[2]), 0.5 * (forms[1] + forms[3])];
+            let point: Vec<f64> = (study.problem.dimensions().iter())
+                .map(|one| {
+                    one.name()
+                        .strip_prefix("block.foot.corner")
+                        .map_or(one.nominal(), |corner| forms[corner.parse::<usize>().unwrap() - 1])
+                })
+                .collect();
+            // The middle is above the diagonal by its form times the cosine of a tilt of 2e-3.
+            close(at(&study, &point), diagonals[0].max(diagonals[1]), 2e-6, 1.0);
+        }
+        let found = simulate(&study.problem, &SimulationOptions::default().with_samples(100_000)).unwrap();
+        let one = &found.characteristics[0];
+        // The sigma at a corner is 0.5 mm, so that the moments are half those of legs with a sigma of 1 mm.
+        for (name, found, factor) in
+            [("mean", one.mean, 0.5), ("sigma", one.sigma, 0.5), ("kurtosis", one.kurtosis, 1.0)]
+        {
+            let found = found.unwrap();
+            close(found.value, factor * expected(name), 3.0 * found.standard_error.unwrap(), 1.0);
+        }
+        let expanded = parse(&study.expanded).unwrap();
+        let again = simulate(&expanded.problem, &SimulationOptions::default().with_samples(100_000)).unwrap();
+        assert_eq!(again.characteristics[0].mean, one.mean);
+    }
+}
+
+/// A face whose corners deviate alike moves by that amount, and its profile moves the corners with the face, as in a contact without a force.
+#[test]
+fn a_pressed_face_moves_with_its_zones() {
+    let face = "size = [600, 400], profile = 0.4, flatness = { zone = 0.1, side = \"out\" }";
+    let lid = "lid = { of = \"block.lid\", from = \"floor.top\", unit = \"mm\" }\n";
+    let pressed = parse(&(block("check", face, "weight_at = \"block.weight\"") + lid)).unwrap();
+    let held = parse(&(block("check", "size = [600, 400], profile = 0.4", "takes = 3") + lid)).unwrap();
+    let names = |study: &Study| study.problem.dimensions().iter().map(|one| one.name().to_owned()).collect::<Vec<_>>();
+    let deviations = [("block.foot.at", 0.11), ("block.foot.tilt_x", 3e-4), ("block.foot.tilt_y", -2e-4)];
+    let values = |study: &Study, form: f64| -> Vec<f64> {
+        let of = |name: &String| {
+            let given = deviations.iter().find(|(own, _)| own == name).map(|(_, value)| *value);
+            given.unwrap_or(if name == "t" { 50.0 } else { form })
+        };
+        let point: Vec<f64> = names(study).iter().map(of).collect();
+        all_at(study, &point)
+    };
+    // Zones are carried to the corners by small angles: 360 mm times half the square of 3.6e-4.
+    for form in [0.0, 0.07] {
+        for (found, expected) in values(&pressed, form).into_iter().zip(values(&held, form)) {
+            close(found, expected + form, 5e-5, 0.0);
+        }
+    }
 }
 
 /// Text of a table on a floor whose whole is turned by `turned` degrees about x, with lengths multiplied by a factor.

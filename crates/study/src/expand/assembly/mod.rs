@@ -8,6 +8,7 @@
 //!
 //! The joints are closed at the nominal sizes first. So a fault of the assembly has a message in terms of parts and joints.
 
+pub(super) mod face_points;
 mod joints;
 mod measures;
 mod parts;
@@ -186,8 +187,8 @@ fn read(
             joints: Vec::new(),
             measures: Vec::new(),
             length_unit: values.literal_unit(),
-        },
             shown_unit: values.shown_unit(),
+        },
         parts: parts.iter().map(|(key, _)| entry("parts", key)).collect(),
         joints: joints.iter().map(|(key, _)| entry("joints", key)).collect(),
         measures: measures.iter().map(|one| entry("characteristics", one.key)).collect(),

@@ -26,7 +26,10 @@ pub(super) fn joint(key: &Key, tree: &Tree, assembly: &Assembly) -> Result<PartJ
     // Keys of joints that take freedoms have no meaning beside a force.
     let press = OWN.into_iter().find(|key| tree.get(key).is_some()).unwrap_or("press");
     for (other, why) in [
-        ("against", "are two ways to name what touches: write the contact points as `targets`"),
+        (
+            "against",
+            "are two ways to name what touches: let `against` name a plane with flatness and size, or write the contact points as `targets`",
+        ),
         (
             "takes",
             "are two ways to hold a part: a joint that presses takes what its contacts stop, so leave out `takes`",

@@ -4,9 +4,9 @@ use crate::expand::{Tree, Value};
 
 /// Directions of a feature in its part that do not vary.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ConstantFrame {
+pub(in crate::expand::assembly) struct ConstantFrame {
     /// The directions x, y, z.
-    pub(super) axes: [[f64; 3]; 3],
+    pub(in crate::expand::assembly) axes: [[f64; 3]; 3],
 }
 
 pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -25,7 +25,7 @@ pub(super) fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
 
 impl ConstantFrame {
     /// Frame of a feature with the keys of its direction. Returns None if a direction varies.
-    pub(super) fn of(feature: &Tree, direction: &str) -> Option<Self> {
+    pub(in crate::expand::assembly) fn of(feature: &Tree, direction: &str) -> Option<Self> {
         let z = match feature.get(direction) {
             Some(given) => constant(given)?,
             None => [0.0, 0.0, 1.0],
@@ -53,7 +53,7 @@ pub(super) fn constant(tree: &Tree) -> Option<[f64; 3]> {
 }
 
 /// Number of a tree. Returns None for other values.
-pub(super) fn number(tree: &Tree) -> Option<f64> {
+pub(in crate::expand::assembly) fn number(tree: &Tree) -> Option<f64> {
     match tree.value {
         Value::Number(value) => Some(value),
         Value::Integer(value) => Some(value as f64),
