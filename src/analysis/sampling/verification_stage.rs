@@ -187,8 +187,7 @@ fn sample(
     let replacement = if replacing { model_moments(one, &found) } else { None };
     let Some(moments) = replacement.as_ref().map(|of| of.moments).or(one.moments) else { return Some((spent, None)) };
     let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));
-    let capability = replacement.as_ref().map_or(one.distribution.capability, |of| of.capability);
-    let law = capability.and_then(|capability| capability.yield_());
+    let law = replacement.as_ref().map_or(one.distribution.capability, |of| of.capability).and_then(|of| of.yield_());
     let limits = one.characteristic.limits();
     let sides = [limits.lower().is_some(), limits.upper().is_some()];
     let error_estimate = ErrorEstimate {
