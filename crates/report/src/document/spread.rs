@@ -230,7 +230,10 @@ fn said(of: &SpreadChart) -> String {
     let near = of.sigma.abs();
     let number = |x: f64| if near > 0.0 { beside(x, near) } else { plain(x) };
     let mut parts = vec![of.label.clone()];
-    parts.extend(of.places.iter().map(|(x, _, name)| format!("{name} {}", number(*x))));
+    parts.extend(of.places.iter().map(|(x, kind, name)| {
+        let kind = if *kind == "quantile" && name.ends_with('%') { " quantile" } else { "" };
+        format!("{name}{kind} {}", number(*x))
+    }));
     for (limit, name, rejected) in
         [(of.limits[0], "lower limit", &of.rejects[0]), (of.limits[1], "upper limit", &of.rejects[1])]
     {
