@@ -63,8 +63,8 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
         details += &screen.details;
     }
     if let Some(left @ 1..) = all.len().checked_sub(printed) {
-        let sections = plural(left, "more characteristic is", "more characteristics are");
-        screens += &format!("<p class=\"note print-only\">The sections of {sections} in the page itself.</p>\n");
+        let sections = plural(left, "more section is", "more sections are");
+        screens += &format!("<p class=\"note print-only\">{sections} in the page itself.</p>\n");
     }
     match (possible, what_if.and_then(WhatIf::impossible)) {
         (Some(what_if), _) => screens += &tries::section(what_if),
