@@ -213,7 +213,8 @@ impl FormulaSet {
     /// Returns bounds of a formula over a box, with an interval for every variable, by interval arithmetic. Terms that a sum adds and
     /// subtracts again are left out.
     ///
-    /// Cost: about as many operations on intervals as the formula has, times one more than the number of variables that vary.
+    /// Cost: about as many operations on intervals as the formula has, each times one more than the number of varying variables that its
+    /// operands depend on.
     ///
     /// ```
     /// use sensitol::assembly::formula::Formula;
@@ -227,16 +228,14 @@ impl FormulaSet {
     /// # Ok::<(), sensitol::assembly::formula::FormulaError>(())
     /// ```
     pub fn bounds(&self, formula: usize, region: &[[f64; 2]]) -> Bounds {
-        let moving: Vec<usize> = (0..region.len()).filter(|&d| region[d][0] < region[d][1]).collect();
-        let place: HashMap<usize, usize> = moving.iter().enumerate().map(|(index, &d)| (d, index)).collect();
         let variable = |d: usize| {
             let value = Interval::between(region[d][0], region[d][1]);
-            place.get(&d).map_or(Sloped::still(value), |&index| Sloped::variable(value, index, moving.len()))
+            if region[d][0] < region[d][1] { Sloped::variable(value, d) } else { Sloped::still(value) }
         };
         let Sloped { value, slopes: of_moving } =
             self.bounding(formula).evaluate(&variable, &mut Vec::new()).swap_remove(0);
         let mut slopes = vec![Interval::between(0.0, 0.0); region.len()];
-        moving.iter().zip(of_moving).for_each(|(&d, slope)| slopes[d] = slope);
+        of_moving.into_iter().for_each(|(d, slope)| slopes[d] = slope);
         Bounds { value, slopes }
     }
 

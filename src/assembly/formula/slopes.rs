@@ -1,25 +1,26 @@
 //! Intervals with bounds of their slopes, which decide on which side of a box a formula is least.
 
+use std::cmp::Ordering;
+
 use crate::assembly::formula::functions::{Binary, Unary};
 use crate::assembly::formula::interval::Interval;
 use crate::assembly::formula::scalar::{Scalar, Verdict};
 
-/// Value over a box with its slope along each of some dimensions.
+/// Value over a box with its slope along each dimension that it depends on.
 ///
 /// If the value is [whole](Interval::is_whole), the mean value theorem holds with these slopes. At a kink they enclose the slopes of both
-/// sides.
+/// sides. All other slopes are 0.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sloped {
     pub(super) value: Interval,
-    /// Slopes along the dimensions; empty for a value that does not depend on any.
-    pub(super) slopes: Vec<Interval>,
+    /// Slopes as (dimension, slope), ascending; empty for a value that does not depend on any dimension.
+    pub(super) slopes: Vec<(usize, Interval)>,
 }
 
 impl Sloped {
-    /// Returns the dimension at `index` of `count`.
-    pub(super) fn variable(value: Interval, index: usize, count: usize) -> Self {
-        let slope = |other: usize| Interval::constant(if other == index { 1.0 } else { 0.0 });
-        Self { value, slopes: (0..count).map(slope).collect() }
+    /// Returns a dimension.
+    pub(super) fn variable(value: Interval, dimension: usize) -> Self {
+        Self { value, slopes: vec![(dimension, Interval::constant(1.0))] }
     }
 
     /// Returns a value that does not depend on any dimension.
@@ -29,21 +30,55 @@ impl Sloped {
 
     /// Returns `f(self)` from `f` and `f'`.
     fn through(&self, value: Interval, slope: Interval) -> Self {
-        Self { value, slopes: self.slopes.iter().map(|own| slope.multiply(own)).map(certain).collect() }
+        Self { value, slopes: self.slopes.iter().map(|(d, own)| (*d, certain(slope.multiply(own)))).collect() }
     }
 
-    /// Combines the slopes of two values, with 0 for a value without slopes.
+    /// Combines the slopes of two values, with 0 for a value that does not depend on a dimension.
     fn from(value: Interval, a: &Self, b: &Self, slope: impl Fn(&Interval, &Interval) -> Interval) -> Self {
         let zero = Interval::constant(0.0);
-        let of = |operand: &'_ Self, index: usize| operand.slopes.get(index).copied().unwrap_or(zero);
-        let count = a.slopes.len().max(b.slopes.len());
-        Self { value, slopes: (0..count).map(|index| certain(slope(&of(a, index), &of(b, index)))).collect() }
+        let mut slopes = Vec::with_capacity(a.slopes.len() + b.slopes.len());
+        let mut add = |d: usize, of_a: &Interval, of_b: &Interval| slopes.push((d, certain(slope(of_a, of_b))));
+        let (mut left, mut right) = (&a.slopes[..], &b.slopes[..]);
+        while let ([(d, of_a), after_left @ ..], [(e, of_b), after_right @ ..]) = (left, right) {
+            match d.cmp(e) {
+                Ordering::Less => {
+                    add(*d, of_a, &zero);
+                    left = after_left;
+                }
+                Ordering::Greater => {
+                    add(*e, &zero, of_b);
+                    right = after_right;
+                }
+                Ordering::Equal => {
+                    add(*d, of_a, of_b);
+                    (left, right) = (after_left, after_right);
+                }
+            }
+        }
+        left.iter().for_each(|(d, of_a)| add(*d, of_a, &zero));
+        right.iter().for_each(|(d, of_b)| add(*d, &zero, of_b));
+        Self { value, slopes }
     }
 
-    /// Returns a value whose slopes are unknown if an operand depends on a dimension.
+    /// Returns `a + b`. A slope along a dimension that only one of them depends on is copied, because sums of many terms have many slopes.
+    fn sum(value: Interval, a: &Self, b: &Self) -> Self {
+        let apart = match (a.slopes.last(), b.slopes.first()) {
+            (Some((last, _)), Some((first, _))) => last < first,
+            _ => true,
+        };
+        match apart {
+            true => Self { value, slopes: [&a.slopes[..], &b.slopes[..]].concat() },
+            false => Self::from(value, a, b, Interval::add),
+        }
+    }
+
+    /// Returns a value whose slopes along the dimensions that an operand depends on are unknown.
     fn unknown(value: Interval, operands: &[&Self]) -> Self {
-        let count = operands.iter().map(|operand| operand.slopes.len()).max().unwrap_or(0);
-        Self { value, slopes: vec![Interval::EVERYTHING; count] }
+        let mut slopes: Vec<(usize, Interval)> =
+            operands.iter().flat_map(|operand| &operand.slopes).map(|(d, _)| (*d, Interval::EVERYTHING)).collect();
+        slopes.sort_unstable_by_key(|(d, _)| *d);
+        slopes.dedup_by_key(|(d, _)| *d);
+        Self { value, slopes }
     }
 
     fn power(&self, exponent: &Self, value: Interval) -> Self {
@@ -111,7 +146,7 @@ impl Scalar for Sloped {
         let y = Interval::binary(function, &a.value, &b.value);
         match function {
             _ if a.slopes.is_empty() && b.slopes.is_empty() => Self::still(y),
-            Binary::Add => Self::from(y, a, b, Interval::add),
+            Binary::Add => Self::sum(y, a, b),
             Binary::Subtract => Self::from(y, a, b, Interval::subtract),
             Binary::Multiply => Self::from(y, a, b, |of_a, of_b| of_a.multiply(&b.value).add(&a.value.multiply(of_b))),
             // The slope follows from q b = a.
