@@ -309,7 +309,7 @@ pub(super) struct SweepArgs {
     pub(super) html: Option<PathBuf>,
 
     /// Print that page to a PDF by an installed Chromium
-    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT, hide_short_help = true)]
+    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
     pub(super) pdf: Option<PathBuf>,
 
     /// Write the table as sweep.csv into DIR, which is made where it is missing

@@ -142,7 +142,7 @@ pub(crate) struct CompareArgs {
     pub(crate) html: Option<PathBuf>,
 
     /// Print that page to a PDF by an installed Chromium
-    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT, hide_short_help = true)]
+    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
     pub(crate) pdf: Option<PathBuf>,
 
     /// Write the table as comparison.csv into DIR, which is made where it is missing
