@@ -17,8 +17,6 @@ const LARGE: f64 = 0.3;
 /// Factor of the root mean square at the random points from which on a residual is sudden. At three sigmas the residuals of a parabola through
 /// the nodes of a three-point rule are 7 times as large for a cubic, and 8 times for a quartic.
 const SUDDEN: f64 = 10.0;
-/// Root mean square of the residuals at random points in sigmas above which a surface does not follow the model: 1 % of the variance.
-const ASTRAY: f64 = 0.1;
 /// Part of the last residual below which an earlier one is no part of it.
 const NOTHING: f64 = 0.02;
 /// Component of a direction above which the ray is the axis of that input.
@@ -131,11 +129,11 @@ impl CheckRay {
         self.direction.iter().any(|part| part.abs() > ALONG_ONE)
     }
 
-    /// True if the farthest residual is large, and sudden or one of a surface that does not follow the model: a smooth surface that does has
-    /// none. `d` has the residual of every row.
+    /// True if the farthest residual is large, and sudden or one of many that are large: a surface that follows the model has none. `d` has the
+    /// residual of every row.
     pub(super) fn refutes(&self, d: &[f64], random: Range<usize>) -> bool {
         let (last, near) = (d[self.last().1].abs(), root_mean_square(&d[random]));
-        last.is_finite() && last > LARGE && (last > SUDDEN * near || near > ASTRAY)
+        last.is_finite() && last > LARGE && (last > SUDDEN * near || near > LARGE)
     }
 
     /// Farthest point on it.

@@ -194,13 +194,14 @@ fn no_verdict_of_an_external_model_is_far_from_the_truth() {
     assert!(wrong_verdicts().is_empty(), "{:#?}", wrong_verdicts());
 }
 
-/// Functions that check points refute at the limit with any seed. On the first five, constants were chosen.
-const REFUTED: [&str; 8] = ["kink", "step", "fifth power", "corner", "branch", "bump", "stop", "two large"];
+/// Functions that check points refute at the limit with any seed. On the first four, constants were chosen.
+const REFUTED: [&str; 7] = ["kink", "step", "corner", "branch", "bump", "stop", "two large"];
 /// Functions that a surface follows.
 const SMOOTH: [&str; 3] = ["product", "exponential", "hypotenuse"];
 
 /// `auto` decides a yield by points of the model if check points refute the surface at its limit, and takes no further point of a smooth
-/// model or if the check points decide the target. The 95 % intervals hold the right share: of 24, fewer than 21 do once in 36 times.
+/// model or if the check points decide the target. The 95 % intervals hold the right share: of 24, fewer than 21 do
+/// once in 30 times.
 #[test]
 fn refuted_tails_are_decided_by_points() {
     let (mut intervals, mut missed) = (0, Vec::new());
@@ -227,7 +228,7 @@ fn refuted_tails_are_decided_by_points() {
         let decided = analyze(&problem(case, Some(0.5)), &Options::from(Method::Auto)).unwrap();
         assert_eq!(decided.characteristics[0].evidence.tail_sampled, None, "{}", case.name);
     }
-    assert!(intervals >= 24 && 8 * missed.len() <= intervals, "{missed:#?} of {intervals}");
+    assert!(intervals >= 21 && 8 * missed.len() <= intervals, "{missed:#?} of {intervals}");
 }
 
 /// Rows of the table in `docs/accuracy.md`: covered figures of the functions that judge, and of those that constants were chosen on.
