@@ -268,6 +268,9 @@ fn a_face_with_form_stands_on_its_corners() {
     let expected = |name: &str| case["expect"][name].as_f64().unwrap();
     for units in ["check", "convert"] {
         let study = parse(&block(units, "size = [600, 400], flatness = 3", "press = [0, 0, -1]")).unwrap();
+        // A corner has the tolerance of its form.
+        let gaps = format!("{:?}", study.completeness());
+        assert!(!gaps.contains("corner"), "{gaps}");
         // The corners are around the face: those of one diagonal are the first and the third.
         for forms in [[0.4, -0.2, 0.1, 0.9], [1.0, 0.2, 0.1, -0.5]] {
             let diagonals = [0.5 * (forms[0] + forms[2]), 0.5 * (forms[1] + forms[3])];

@@ -203,7 +203,7 @@ impl PointedFace<'_> {
             part.into_iter().for_each(|part| part.push((own(&name), self.made(Value::Table(keys.clone())))));
             let Some(form) = &form else { continue };
             expanded.tree.section("dimensions").into_iter().for_each(|all| all.push((own(&deviation), form.clone())));
-            let key = format!("{} (form at a {what})", self.path());
+            let key = format!("parts.{}.{name} (form at a {what})", self.part);
             expanded.origins.push(Origin { section: "dimensions", name: deviation, key, span: self.span.clone() });
         }
         Ok(names)
