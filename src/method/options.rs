@@ -57,6 +57,8 @@ pub struct Options {
     pub densities: bool,
     /// True if figures of a cheap model replace those of a surface that the model refutes, as in `auto`.
     pub model_figures: bool,
+    /// True if `auto` evaluates points of a costly model in tails at whose limits check points refute the surface.
+    pub sample_tails: bool,
 }
 
 /// Wanted absolute errors of results other than sigma; None if no accuracy is wanted.
@@ -299,6 +301,7 @@ impl Default for Options {
             coverage: None,
             densities: false,
             model_figures: false,
+            sample_tails: true,
         }
     }
 }

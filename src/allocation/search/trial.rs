@@ -140,7 +140,7 @@ impl Driver<'_> {
         let costly = !self.is_cheap(problem);
         let spent = usize::try_from(self.spent.run.evaluations).unwrap_or(usize::MAX);
         let budget = self.options.analysis.budget.map(|budget| budget.saturating_sub(spent));
-        let options = Options { budget, ..self.options.analysis.clone() };
+        let options = Options { budget, sample_tails: false, ..self.options.analysis.clone() };
         let found: Result<_, MethodError> = analyze_keeping(problem, &options, self.run);
         let (analysis, findings) = found.ok()?;
         if costly {
