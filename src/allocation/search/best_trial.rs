@@ -11,7 +11,7 @@ use std::rc::Rc;
 
 use crate::allocation::requirement::constraint::Constraint;
 use crate::allocation::requirement::registry::form_of;
-use crate::allocation::result::allocation::{Allocation, AllocationSolver, Proof, Status};
+use crate::allocation::result::allocation::{AllocationSolver, Attainable, Proof, Status};
 use crate::allocation::result::solver_result::{Chosen, Solved, Starts};
 use crate::allocation::search::driver::Driver;
 use crate::allocation::search::end_choice::{AfterSearch, Origin, SAME, Standing, cheapest};
@@ -31,6 +31,32 @@ const STRICTER: usize = 3;
 const MARGIN: f64 = 1.01;
 /// Parts of the way back from tolerances that keep everything, but not with their written digits.
 const BACK: [f64; 4] = [1e-4, 1e-3, 1e-2, 1e-1];
+
+/// Result of a search.
+pub(in crate::allocation) struct Searched {
+    /// End of the search. None if nothing was found.
+    pub(in crate::allocation) end: Option<SearchEnd>,
+    pub(in crate::allocation) failure: SearchFailure,
+}
+
+/// Reason why a search found nothing.
+pub(in crate::allocation) struct SearchFailure {
+    pub(in crate::allocation) status: Status,
+    /// Best value of the requirement that cannot be kept.
+    pub(in crate::allocation) attainable: Option<Attainable>,
+}
+
+impl SearchFailure {
+    /// State before any search has failed.
+    pub(in crate::allocation) fn none() -> Self {
+        Self { status: Status::OutOfTime, attainable: None }
+    }
+
+    /// The same status without a value of a requirement, since some tolerances keep it.
+    fn without_attainable(self) -> Self {
+        Self { attainable: None, ..self }
+    }
+}
 
 pub(in crate::allocation) struct SearchEnd {
     pub(in crate::allocation) station: Rc<LinearizationPoint>,
@@ -92,35 +118,34 @@ impl Driver<'_> {
         AllocationStart { station: Rc::clone(station), trial, offered }
     }
 
-    /// Returns the better of the end of a search and the start. Returns None if nothing was found. The status gives the
-    /// reason.
+    /// Returns the better of the end of a search and the start.
     pub(in crate::allocation) fn best_end(
         &mut self,
-        allocation: &mut Allocation,
+        original: &Problem,
         start: AllocationStart,
-        end: Option<SearchEnd>,
-    ) -> Result<Option<SearchEnd>, AllocateError> {
-        let end = match end {
-            Some(end) if end.ended.within_budget && !self.spent.stopped => self.tried(allocation, end)?,
+        Searched { end, failure }: Searched,
+    ) -> Result<Searched, AllocateError> {
+        let Searched { end, failure } = match end {
+            Some(end) if end.ended.within_budget && !self.spent.stopped => self.tried(original, end, failure)?,
             // A search that ended on its budget leaves nothing to judge.
-            Some(end) => return Ok(Some(end)),
-            None => None,
+            Some(end) => return Ok(Searched { end: Some(end), failure }),
+            None => Searched { end, failure },
         };
         let free_to_choose = self.task.goal == Goal::LeastCost && !self.spent.stopped;
         let unknown = end.as_ref().is_some_and(|end| end.trial.as_ref().is_none_or(Trial::is_unknown));
         if !free_to_choose || unknown {
-            return Ok(end);
+            return Ok(Searched { end, failure });
         }
         let chosen = |end: &SearchEnd| end.last.is_some() || self.task.priced.is_empty();
         let end = end.filter(chosen);
         if self.task.basis.is_proportion() {
-            return self.best_in_proportion(end);
+            return Ok(Searched { end: self.best_in_proportion(end)?, failure });
         }
-        let standing = self.standing(allocation.status, &start, end.as_ref());
+        let standing = self.standing(failure.status, &start, end.as_ref());
         match standing.next() {
-            AfterSearch::TakeEnd => Ok(end),
-            AfterSearch::TakeNothing => Ok(None),
-            AfterSearch::SearchByTrials => self.cheapest_result(allocation, start, end, standing),
+            AfterSearch::TakeEnd => Ok(Searched { end, failure }),
+            AfterSearch::TakeNothing => Ok(Searched { end: None, failure }),
+            AfterSearch::SearchByTrials => self.cheapest_result(start, Searched { end, failure }, standing),
         }
     }
 
@@ -143,11 +168,10 @@ impl Driver<'_> {
     /// Cheapest of the end, the start, and the result of a search by trials.
     fn cheapest_result(
         &mut self,
-        allocation: &mut Allocation,
         start: AllocationStart,
-        end: Option<SearchEnd>,
+        Searched { end, failure }: Searched,
         Standing { start_kept, end_kept, .. }: Standing,
-    ) -> Result<Option<SearchEnd>, AllocateError> {
+    ) -> Result<Searched, AllocateError> {
         let seen = self.spent.seen.take();
         let found = match self.is_cheap(&start.station.problem) {
             true => self.search_by_trials(&start, start_kept, (end.as_ref(), seen.as_ref())),
@@ -158,35 +182,42 @@ impl Driver<'_> {
         let costs = [found.as_ref(), start_trial.as_ref()].map(|trial| Some(trial?.cost));
         match (cheapest(costs[0], costs[1], end_cost), found, start_trial) {
             (Origin::Trials, Some(trial), _) => {
-                allocation.attainable = None;
                 let constraints = self.constraints(&trial.problem, &self.task.requirements);
                 let station = self.station(trial.problem.clone())?;
                 let proof = Proof { solver: Some(AllocationSolver::VerifiedSearch), ..Proof::default() };
-                Ok(station.map(|station| ended_at(Rc::new(station), constraints, trial, proof, false)))
+                let end = station.map(|station| ended_at(Rc::new(station), constraints, trial, proof, false));
+                Ok(Searched { end, failure: failure.without_attainable() })
             }
             (Origin::Start, _, Some(trial)) => {
-                allocation.attainable = None;
                 let constraints = self.constraints(&start.station.problem, &self.task.requirements);
                 let proof = Proof { residual: Some(f64::INFINITY), ..Proof::default() };
-                Ok(Some(ended_at(start.station, constraints, trial, proof, true)))
+                let end = Some(ended_at(start.station, constraints, trial, proof, true));
+                Ok(Searched { end, failure: failure.without_attainable() })
             }
-            _ => Ok(end),
+            _ => Ok(Searched { end, failure }),
         }
     }
 
     /// Tries an end, and repeats the search while its trial misses only requirements that can be made stricter.
-    fn tried(&mut self, allocation: &mut Allocation, end: SearchEnd) -> Result<Option<SearchEnd>, AllocateError> {
+    fn tried(
+        &mut self,
+        original: &Problem,
+        end: SearchEnd,
+        mut failure: SearchFailure,
+    ) -> Result<Searched, AllocateError> {
         let mut end = self.with_trial(end);
         for _ in 0..STRICTER {
             if !self.may_be_stricter(&end) || !self.require_more(&end) {
                 break;
             }
-            match self.searched_again(allocation, &end)? {
+            let again = self.searched_again(original, &end, failure)?;
+            failure = again.failure;
+            match again.end {
                 Some(next) => end = self.with_trial(next),
                 None => break,
             }
         }
-        Ok(Some(end))
+        Ok(Searched { end: Some(end), failure })
     }
 
     /// True if an end misses a requirement, and a cheap model allows another search.
@@ -198,22 +229,23 @@ impl Driver<'_> {
         confirmed && repeatable && missed && self.is_cheap(&trial.problem)
     }
 
-    /// Repeats the search from an end, with requirements that were made stricter. Returns None if it finds nothing more,
-    /// so that the last end stays.
+    /// Repeats the search from an end, with requirements that were made stricter. If it finds nothing more, the last end
+    /// stays.
     fn searched_again(
         &mut self,
-        allocation: &mut Allocation,
+        original: &Problem,
         end: &SearchEnd,
-    ) -> Result<Option<SearchEnd>, AllocateError> {
+        failure: SearchFailure,
+    ) -> Result<Searched, AllocateError> {
         let at = end.last.as_ref().map(|(solved, ..)| solved.at.clone()).unwrap_or_default();
         let constraints = self.constraints(&end.station.problem, &self.task.requirements);
-        let Some(station) = self.station(end.station.problem.clone())? else { return Ok(None) };
-        let next = self.search(allocation, Rc::new(station), &constraints, &at)?;
-        let next = next.filter(|next| next.ended.within_budget && !self.spent.stopped);
-        if next.is_none() {
-            allocation.attainable = None;
-        }
-        Ok(next)
+        let Some(station) = self.station(end.station.problem.clone())? else {
+            return Ok(Searched { end: None, failure });
+        };
+        let next = self.search(original, Rc::new(station), (&constraints, &at), failure)?;
+        let end = next.end.filter(|next| next.ended.within_budget && !self.spent.stopped);
+        let failure = if end.is_none() { next.failure.without_attainable() } else { next.failure };
+        Ok(Searched { end, failure })
     }
 
     /// Adds the trial to an end. It is the analysis of the linearization point, if this was made as a trial is.

@@ -9,9 +9,9 @@ use crate::allocation::choice::selection::{Choice, within_bounds};
 use crate::allocation::choice::single_offer::{Setting, tightened};
 use crate::allocation::cost::priced_group::Priced;
 use crate::allocation::requirement::constraint::Constraint;
-use crate::allocation::result::allocation::{Allocation, Attainable, Status};
+use crate::allocation::result::allocation::{Attainable, Status};
 use crate::allocation::result::solver_result::Chosen;
-use crate::allocation::search::best_trial::SearchEnd;
+use crate::allocation::search::best_trial::{SearchEnd, SearchFailure, Searched};
 use crate::allocation::search::driver::{Driver, Near, ROUNDS, kept_within, unit, with_choice, with_tolerances};
 use crate::allocation::search::linearization_point::{LinearizationPoint, Seen};
 use crate::allocation::search::nominal::Recentred;
@@ -21,28 +21,28 @@ use crate::allocation::task::{AllocateError, Goal};
 use crate::problem::Problem;
 
 impl Driver<'_> {
-    /// Searches along the derivatives of successive linearization points. Returns None if nothing was found. The status
-    /// gives the reason.
+    /// Searches along the derivatives of successive linearization points, from the half bands `before`. `failure` is that
+    /// of an earlier search.
     pub(in crate::allocation) fn search(
         &mut self,
-        allocation: &mut Allocation,
+        original: &Problem,
         first: Rc<LinearizationPoint>,
-        constraints: &[Constraint],
-        before: &[f64],
-    ) -> Result<Option<SearchEnd>, AllocateError> {
+        (constraints, before): (&[Constraint], &[f64]),
+        failure: SearchFailure,
+    ) -> Result<Searched, AllocateError> {
         if self.task.basis.is_proportion() {
-            return self.in_proportion(allocation, first, constraints);
+            return self.in_proportion(original, first, constraints, failure);
         }
         let search = DerivativeSearch {
-            near: Near::of(&allocation.problem),
-            original: allocation.problem.clone(),
+            near: Near::of(original),
+            original: original.clone(),
             constraints,
             current: constraints.to_vec(),
             base: first.problem.clone(),
             state: SearchState::new(first, before.to_vec()),
             driver: self,
         };
-        search.run(allocation)
+        search.run(failure)
     }
 
     /// Stores the cheapest linearization point that keeps everything.
@@ -73,7 +73,7 @@ struct DerivativeSearch<'s, 'd> {
 
 impl DerivativeSearch<'_, '_> {
     /// Runs rounds to the end of the search.
-    fn run(mut self, allocation: &mut Allocation) -> Result<Option<SearchEnd>, AllocateError> {
+    fn run(mut self, failure: SearchFailure) -> Result<Searched, AllocateError> {
         for _ in 0..ROUNDS {
             let finish = match self.round()? {
                 Next::Ask(question) => self.ask(question)?,
@@ -87,14 +87,14 @@ impl DerivativeSearch<'_, '_> {
                 None => {}
                 Some(Finish::LastChoice) => break,
                 Some(Finish::Nothing { status, attainable }) => {
-                    allocation.status = status;
-                    allocation.attainable = attainable.or(allocation.attainable.take());
-                    return Ok(None);
+                    let attainable = attainable.or(failure.attainable);
+                    return Ok(Searched { end: None, failure: SearchFailure { status, attainable } });
                 }
             }
         }
         let SearchState { point: station, last, ended, .. } = self.state;
-        Ok(Some(SearchEnd { station, last, constraints: self.current, ended, trial: None, is_start: false }))
+        let end = SearchEnd { station, last, constraints: self.current, ended, trial: None, is_start: false };
+        Ok(Searched { end: Some(end), failure })
     }
 
     /// Moves nominal values, or else chooses tolerances.

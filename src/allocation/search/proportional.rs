@@ -4,31 +4,33 @@ use std::rc::Rc;
 
 use crate::allocation::cost::default_costs::{CostBasis, unit};
 use crate::allocation::requirement::constraint::{Constraint, kept};
-use crate::allocation::result::allocation::{Allocation, AllocationSolver, Proof, Status};
+use crate::allocation::result::allocation::{AllocationSolver, Proof, Status};
 use crate::allocation::result::solver_result::{Solved, Starts};
-use crate::allocation::search::best_trial::SearchEnd;
+use crate::allocation::search::best_trial::{SearchEnd, SearchFailure, Searched};
 use crate::allocation::search::common_factor::loosest_of;
 use crate::allocation::search::driver::{Driver, Near, ROUNDS, cost, with_tolerances};
 use crate::allocation::search::linearization_point::LinearizationPoint;
 use crate::allocation::search::search_state::Ended;
 use crate::allocation::task::AllocateError;
+use crate::problem::Problem;
 
 impl Driver<'_> {
     /// Loosest tolerances in the proportions of the task's basis that keep every requirement.
     pub(in crate::allocation) fn in_proportion(
         &mut self,
-        allocation: &mut Allocation,
+        original: &Problem,
         first: Rc<LinearizationPoint>,
         constraints: &[Constraint],
-    ) -> Result<Option<SearchEnd>, AllocateError> {
-        let near = Near::of(&allocation.problem);
+        failure: SearchFailure,
+    ) -> Result<Searched, AllocateError> {
+        let near = Near::of(original);
         let priced = &self.task.priced;
         let members: Vec<usize> = priced.iter().flat_map(|group| group.members.iter().copied()).collect();
         let mut at = self.proportions(&first);
         let mut ended = Ended { agreed: false, within_budget: true, at_rest: None };
         let mut station = match self.station(with_tolerances(first.problem.clone(), priced, &at)?)? {
             Some(there) => there,
-            None => return Ok(None),
+            None => return Ok(Searched { end: None, failure }),
         };
         for _ in 0..ROUNDS {
             if self.spent.stopped || !station.answers(constraints) {
@@ -40,8 +42,8 @@ impl Driver<'_> {
                 if constraints.iter().all(|one| kept(one.value_at(&station.responses, &ones))) {
                     break;
                 }
-                allocation.status = Status::NoFeasiblePointFound;
-                return Ok(None);
+                let failure = SearchFailure { status: Status::NoFeasiblePointFound, ..failure };
+                return Ok(Searched { end: None, failure });
             };
             // The first factor is only as accurate as its search, so later ones must agree.
             if (factor - 1.0).abs() <= near.agree && factor >= 1.0 {
@@ -71,7 +73,8 @@ impl Driver<'_> {
         };
         let proof = Proof { solver: Some(AllocationSolver::Root), ..Proof::default() };
         let (last, constraints) = (Some((solved, offers, proof)), constraints.to_vec());
-        Ok(Some(SearchEnd { station: Rc::new(station), last, constraints, ended, trial: None, is_start: false }))
+        let end = SearchEnd { station: Rc::new(station), last, constraints, ended, trial: None, is_start: false };
+        Ok(Searched { end: Some(end), failure })
     }
 
     /// Half bands in the proportions of the basis, with the same geometric mean as the present ones.

@@ -4,6 +4,7 @@ use std::rc::Rc;
 use std::sync::atomic::Ordering;
 
 use crate::allocation::result::allocation::{Allocation, JointKept, Proof, Status};
+use crate::allocation::search::best_trial::{SearchFailure, Searched};
 use crate::allocation::search::common_factor::loosest;
 use crate::allocation::search::conclusion::doubts;
 use crate::allocation::search::driver::{AsWritten, Driver, Spent};
@@ -98,8 +99,11 @@ impl Driver<'_> {
             warnings: Vec::new(),
         };
         if !self.spent.stopped {
-            let end = self.search(&mut allocation, first, &constraints, &before)?;
-            if let Some(end) = self.best_end(&mut allocation, start, end)? {
+            let searched = self.search(problem, first, (&constraints, &before), SearchFailure::none())?;
+            let Searched { end, failure: SearchFailure { status, attainable } } =
+                self.best_end(problem, start, searched)?;
+            allocation = Allocation { status, attainable, ..allocation };
+            if let Some(end) = end {
                 self.conclude(&mut allocation, problem, end)?;
             }
         }

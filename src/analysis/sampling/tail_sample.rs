@@ -21,7 +21,8 @@ pub fn most_tail_points(problem: &Problem, options: &Options, spent: usize) -> u
     let signature = problem.function().signature();
     let limited = problem.characteristics().iter().any(|one| one.limits().exist());
     let verified = signature.costly && options.verify.is_none() && options.verifies(signature);
-    let asked = options.sample_tails && options.method == Method::Auto && options.derivatives != Some(DerivativeSource::Exact);
+    let asked =
+        options.sample_tails && options.method == Method::Auto && options.derivatives != Some(DerivativeSource::Exact);
     match asked && limited && verified {
         true => options.budget.map_or(MOST_TAIL_POINTS, |budget| budget.saturating_sub(spent).min(MOST)),
         false => 0,
