@@ -59,7 +59,7 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
     });
     complete!(json, &one.distribution => DistributionFigures {
         yield_source: "/yield_source", capability: "/cpk", reject_intervals: "/ppm_above_interval", quantiles: "/quantiles",
-        coverage: "/coverage", conditional: "/conditional_yield", inspection: "/inspection",
+        coverage: "/coverage", distribution_free_yield: "/distribution_free_yield", conditional: "/conditional_yield", inspection: "/inspection",
     });
     complete!(json, &one.range => RangeFigures {
         worst_case: "/worst_case/linear", curved: "", extremes: "/worst_case/extremes", bounds: "/worst_case/bounds",
