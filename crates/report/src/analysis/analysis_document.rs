@@ -6,7 +6,7 @@ use crate::analysis::range_bars as bars;
 use crate::analysis::stack::Stack;
 use crate::analysis::statistics::CharacteristicStatistics;
 use crate::analysis::statistics::{derivative, matters, part, size, total};
-use crate::analysis::yield_source::{ROUNDING, decision, distribution_free, pearson_fit, source};
+use crate::analysis::yield_source::{ROUNDING, decision, distribution_free, pearson_fit, source, stand_in};
 use crate::document::number::{
     UNKNOWN, beside, carried, carried_ends, index, index_with, known, limits, percent, plain, plural, short,
     significant, within, yielded,
@@ -406,8 +406,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
         section.note(if conditional.is_some() { plain } else { plain.and(target.clone()) });
         conditional.into_iter().for_each(|line| section.note(Line::from(line).and(target.clone())));
         if let Some(free) = free {
-            let names: Vec<String> = free.dimensions.iter().map(|name| short(name)).collect();
-            section.note(format!("all other figures take {} as uniform", names.join(", ")));
+            section.note(stand_in(free));
         }
         source(self).into_iter().for_each(|line| section.note(line));
         self.index_line().into_iter().for_each(|line| section.note(line));

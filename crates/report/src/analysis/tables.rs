@@ -1,6 +1,7 @@
 //! The tables of an analysis over all characteristics, dimensions and warnings.
 
 use crate::analysis::analysis_document::CharacteristicSections;
+use crate::analysis::yield_source::least_yield;
 use crate::document::number::{UNKNOWN, carried, index, limits};
 use crate::document::{Blocks, Cell, Column, Columns, DataTable, Document, Value};
 use crate::figures::FittedFigures;
@@ -31,7 +32,7 @@ impl Report {
             if one.mean().is_none() {
                 return Cell::empty();
             }
-            Cell::both(Value::Empty, one.rejects().with_error().unwrap_or_else(|| "unknown".to_owned()))
+            Cell::both(Value::Empty, free_or_rejects(one))
         };
         let verdict = |one: &Of<'_>| verdict_cell(verdict(&one.requirements()), one.limited());
         let family = |one: &Of<'_>| match one.fitted() {
@@ -146,4 +147,10 @@ impl Report {
 /// Returns a probability from the inspection risks, or None if there is no inspection.
 fn risk(one: &CharacteristicAnalysis, share: fn(&InspectionRisks) -> Option<EstimatedShare>) -> Option<f64> {
     Some(share(one.distribution.inspection.as_ref()?)?.value)
+}
+
+/// Yield with its error, or the least one over all distributions where one is unknown.
+fn free_or_rejects(one: &CharacteristicAnalysis) -> String {
+    let free = one.distribution.distribution_free_yield.as_ref().and_then(least_yield);
+    free.or_else(|| one.rejects().with_error()).unwrap_or_else(|| "unknown".to_owned())
 }

@@ -78,21 +78,39 @@ pub(crate) fn condition(one: &CharacteristicAnalysis) -> String {
     }
 }
 
+/// Steps of a printed bound of a yield: a ten-thousandth of a percent.
+const BOUND_STEPS: f64 = 1e6;
+
+/// Least yield over all distributions, such as `≥ 84.1344 %`. Returns None if it is unknown.
+pub(crate) fn least_yield(of: &DistributionFreeYield) -> Option<String> {
+    of.interval.map(|[least, _]| format!("≥ {} %", rounded_down(least)))
+}
+
 /// Bounds of a yield over all distributions of some dimensions. The ends are rounded outward, because each of them is a bound.
 pub(crate) fn distribution_free(of: &DistributionFreeYield) -> String {
-    let names: Vec<String> = of.dimensions.iter().map(|name| short(name)).collect();
-    let names = names.join(", ");
+    let names = names(of);
     let Some([least, greatest]) = of.interval else {
         return format!(
             "unknown: the distribution of {names} is not given, and bounds need a linear formula or one such dimension"
         );
     };
-    /// Steps of a printed bound: a ten-thousandth of a percent.
-    const STEPS: f64 = 1e6;
-    let percent = |steps: f64| plain(steps / 1e4);
-    let least = percent((STEPS * least).floor());
-    let most =
-        if greatest < 1.0 { format!(", at most {} %", percent((STEPS * greatest).ceil())) } else { String::new() };
+    let most = match greatest < 1.0 {
+        true => format!(", at most {} %", plain((BOUND_STEPS * greatest).ceil() / 1e4)),
+        false => String::new(),
+    };
     let checked = if of.basis == Some(FigureBasis::Points) { " (by points of the model)" } else { "" };
-    format!("at least {least} %{most}, whatever the distribution of {names}{checked}")
+    format!("at least {} %{most}, whatever the distribution of {names}{checked}", rounded_down(least))
+}
+
+/// Sentence on the figures beside such a yield.
+pub(crate) fn stand_in(of: &DistributionFreeYield) -> String {
+    format!("all other figures take {} as uniform", names(of))
+}
+
+fn names(of: &DistributionFreeYield) -> String {
+    of.dimensions.iter().map(|name| short(name)).collect::<Vec<String>>().join(", ")
+}
+
+fn rounded_down(least: f64) -> String {
+    plain((BOUND_STEPS * least).floor() / 1e4)
 }

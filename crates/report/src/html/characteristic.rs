@@ -3,6 +3,7 @@
 use crate::Report;
 use crate::analysis::analysis_document::{CharacteristicSections, SHARES};
 use crate::analysis::statistics::is_of_statistics;
+use crate::analysis::yield_source::{distribution_free, stand_in};
 use crate::document::html::{blocks, table};
 use crate::document::svg::escaped;
 use crate::document::{Aside, Chart, DataTable, Element, Flow, List, Paragraph, Section};
@@ -50,6 +51,11 @@ pub(super) fn screen(
         "" => String::new(),
         remark => format!("<p class=\"note\">{}</p>\n", escaped(remark)),
     };
+    let free = one.distribution.distribution_free_yield.as_ref();
+    let free = free.map(|of| {
+        format!("<p class=\"note\">yield {}; {}</p>\n", escaped(&distribution_free(of)), escaped(&stand_in(of)))
+    });
+    let remark = remark + &free.unwrap_or_default();
     let sorted = Sorted::of(one, section.blocks);
     let findings = blocks(&sorted.findings).replacen("<ul", &format!("<ul id=\"warned-{index}\""), 1);
     let figures = facts(one);

@@ -7,6 +7,7 @@ use crate::WarningReport;
 use crate::analysis::analysis_document::CharacteristicSections;
 use crate::analysis::statistics::part;
 use crate::analysis::worst_case::{KnownWorstCase, WorstCaseKind};
+use crate::analysis::yield_source::least_yield;
 use crate::document::number::{FEWEST, index, known, plain, plural, significant, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::svg::escaped;
@@ -130,7 +131,10 @@ impl<'r> JudgedCharacteristic<'r> {
     /// Findings of an analysis.
     pub(super) fn analysed(place: usize, one: &'r CharacteristicAnalysis) -> Self {
         let all = one.sensitivities.iter().filter_map(|row| Some((row.dimension.as_str(), part(row)?)));
+        let rejecting = Self::of(one, place).rejecting(one.rejects());
+        let free = one.distribution.distribution_free_yield.as_ref().and_then(least_yield);
         Self {
+            yield_text: free.or(rejecting.yield_text),
             verdict: one.verdict(),
             asked: asked(one.requirements()),
             yield_: one.yield_(),
@@ -139,7 +143,7 @@ impl<'r> JudgedCharacteristic<'r> {
             cpk: one.distribution.capability.as_ref().and_then(|of: &Capability| of.cpk),
             worst: one.known_worst_case(),
             driver: all.max_by(|a, b| a.1.total_cmp(&b.1)),
-            ..Self::of(one, place).rejecting(one.rejects())
+            ..rejecting
         }
     }
 
