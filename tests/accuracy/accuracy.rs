@@ -327,8 +327,9 @@ fn figures(text: &mut String) {
         writeln!(text, " {} |", median_and_largest(index)[1]).unwrap();
     }
     *text += "\n## Error estimates\n\nThe functions of `trust.jsonl` as costly models, verified at check points: errors within three estimates, and in brackets the \
-              median of\nestimate over error. Estimates exceed errors because few points must cover the unlucky draw too. A cheap model is sampled \
-              instead, and\nits estimates are standard errors. For methods that integrate, the surface through their points is judged.\n\n\
+              median of\nestimate over error. Estimates exceed errors because a dozen check points may by chance miss the worst places. A cheap \
+              model is sampled instead, and\nits estimates are standard errors. For methods that integrate, the errors are \
+              those of the surface through their points.\n\n\
               | method | mean | sigma | skewness | kurtosis | yield |\n|---|--:|--:|--:|--:|--:|\n";
     for method in Method::ALL {
         write!(text, "| `{}` |", method.name()).unwrap();
