@@ -146,7 +146,7 @@ impl Errors {
         Some(libm::hypot(self.off.mean?, self.off.sigma?))
     }
 
-    /// Part of the overall error that may be due to the reference.
+    /// Overall error below which the reference cannot resolve: twice its standard error.
     pub fn floor(&self) -> f64 {
         RESOLVED * libm::hypot(self.reference.mean.unwrap_or(0.0), self.reference.sigma.unwrap_or(0.0))
     }

@@ -171,7 +171,7 @@ impl DataFault {
 }
 
 impl DataProblem {
-    /// Text to write instead. Returns None if no general advice exists.
+    /// Advice on how to correct the data. Returns None if no general advice exists.
     pub fn help(&self) -> Option<String> {
         let columns = |known: &[String]| {
             format!("its columns are {}", known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))

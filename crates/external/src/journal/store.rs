@@ -367,7 +367,7 @@ impl Store {
         self.failed(noted)
     }
 
-    /// Path of the file and number of its answers that were found to be damaged; None if there was none.
+    /// Path of the file and number of its answers that were found to be damaged; None if no answer was damaged.
     pub fn damaged(&self) -> Option<DamagedJournal> {
         let answers = self.damaged.borrow().len();
         (answers > 0).then(|| DamagedJournal::new(self.path.clone(), answers))

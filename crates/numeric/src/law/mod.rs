@@ -206,7 +206,7 @@ pub enum LawError {
 /// Options that bound the cost of a surface distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LawOptions {
-    /// Points of the sampled branch, in 16 replicates; rounded up to a power of two.
+    /// Number of points if the distribution is sampled, in 16 replicates; rounded up to a power of two.
     pub points: usize,
     /// Seed of the points of the sampled branch.
     pub seed: u64,

@@ -63,7 +63,7 @@ pub struct SmoothSolution {
 }
 
 impl SmoothProblem<'_> {
-    /// Searches from a start. Returns None if the rows are not defined there.
+    /// Searches from a start. Returns None if a constraint is undefined there.
     pub fn minimise(&self, start: &[f64], near: EndConditions) -> Option<SmoothSolution> {
         let mut x = start.to_vec();
         let rows = (self.rows)(&x)?.len();
@@ -173,7 +173,7 @@ pub fn solve_separable<U: CostedUnknown>(problem: &SeparableProblem<'_, U>, star
     }
 }
 
-/// Cost of all unknowns plus the losses, with the derivatives by `ln T`. `x` are the logarithms of `at`.
+/// Cost of all unknowns plus the losses, with the derivatives with respect to `ln T`. `x` are the logarithms of `at`.
 fn with_losses<U: CostedUnknown>(problem: &SeparableProblem<'_, U>, at: &[f64], x: &[f64]) -> ValueAndSlopes {
     let (mut value, mut slopes) = cost(problem.unknowns, at, x);
     for row in problem.losses {
@@ -184,7 +184,7 @@ fn with_losses<U: CostedUnknown>(problem: &SeparableProblem<'_, U>, at: &[f64], 
     (value, slopes)
 }
 
-/// Cost of all unknowns by the first option of each, with the derivatives by `ln T`. `x` are the logarithms of `at`.
+/// Cost of all unknowns by the first option of each, with the derivatives with respect to `ln T`. `x` are the logarithms of `at`.
 pub fn cost<U: CostedUnknown>(unknowns: &[U], at: &[f64], x: &[f64]) -> ValueAndSlopes {
     let of = unknowns.iter().zip(at.iter().zip(x)).map(|(unknown, (&t, &ln))| {
         let [cost, slope] = unknown.options()[0].with_slope(t, ln);

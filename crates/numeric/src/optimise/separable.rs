@@ -31,7 +31,7 @@ pub trait BoundedCost {
     fn with_slope(&self, t: f64, ln: f64) -> [f64; 2];
 }
 
-/// Unknown with a choice among bounded costs.
+/// Unknown whose cost is one of several curves, each with bounds.
 pub trait CostedUnknown {
     /// Cost that may be chosen.
     type Option: BoundedCost;

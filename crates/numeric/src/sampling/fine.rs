@@ -167,8 +167,8 @@ impl Fine {
         None
     }
 
-    /// Greatest error of the interpolation at this rank. It is an eighth of the bin for a density that changes by its own size between
-    /// neighbouring bins, and less if it changes less.
+    /// Greatest error of the interpolation at this rank. It is an eighth of the bin's width for a density that changes by its own size
+    /// between neighbouring bins, and less if it changes less.
     pub fn blur(&self, rank: f64) -> f64 {
         let Some((bin, _)) = self.bin_of_rank(rank) else { return 0.0 };
         let density = |bin: usize| self.counts.get(bin).map_or(0.0, |&count| count as f64 / self.scale.width(bin));

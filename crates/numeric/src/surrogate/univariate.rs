@@ -18,7 +18,8 @@ impl Univariate {
     /// Highest degree of the polynomial.
     pub const DEGREE: usize = 4;
 
-    /// Part with the given first coefficients, up to four. Their origin is a formula unless [`with_origin`](Self::with_origin) changes it.
+    /// Part with the given first coefficients, up to four. They count as exact (from a formula) unless
+    /// [`with_origin`](Self::with_origin) changes that.
     pub fn of_coefficients(known: &[f64]) -> Self {
         let mut coefficients = [0.0; Self::DEGREE];
         coefficients[..known.len()].copy_from_slice(known);

@@ -257,7 +257,7 @@ impl Cell {
         self
     }
 
-    /// Returns the text for a page.
+    /// Returns the text for a page: the longer text if one is set, otherwise the line.
     pub fn on_page(&self) -> Line {
         self.full.as_deref().map_or_else(|| self.line.clone(), Line::from)
     }
