@@ -392,7 +392,7 @@ fn the_how_to_pages_quote_what_was_measured() {
     says(
         CHOOSE,
         &format!(
-            "`six-n` {} and {}, `full` {} and {}, `auto` {} and {}.",
+            "`six-n` takes {} evaluations with an error of sigma of {}, `full` {} and {}, `auto` {} and {}.",
             one.0, one.1, two.0, two.1, three.0, three.1
         ),
     );
