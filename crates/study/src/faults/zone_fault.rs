@@ -64,30 +64,6 @@ pub enum ZoneFault {
         /// Width of the zone of the place.
         wide: f64,
     },
-    /// A form that is wider than the zone that bounds it.
-    #[error("`{form}` {wide} refines nothing: `{bound}` {tight} bounds the form already")]
-    FormBeyondZone {
-        /// Key of the zone of form.
-        form: &'static str,
-        /// Width of the zone of form.
-        wide: f64,
-        /// Key of the zone of the place or the orientation.
-        bound: &'static str,
-        /// Width of that zone.
-        tight: f64,
-    },
-    /// A form that is wider than the tolerance of the size, within which it lies.
-    #[error("`{form}` {wide} is wider than the tolerance {tight} of the size `{size}`, within which the form lies")]
-    FormBeyondSize {
-        /// Key of the zone of form.
-        form: &'static str,
-        /// Width of the zone of form.
-        wide: f64,
-        /// Name of the dimension of the size.
-        size: String,
-        /// Width of its band.
-        tight: f64,
-    },
     /// A cost of a feature that has no zone.
     #[error("`{feature}` has a cost and no zone")]
     CostWithoutZone {
@@ -223,8 +199,7 @@ impl ZoneFault {
             Self::NoAxis { .. } => "name an axis first, such as datums = \"journal\"".into(),
             Self::AxisMissing { .. } => "name the axis of the part: datums = \"journal\"".into(),
             Self::VaryingDirection { .. } => "write its directions as words or numbers".into(),
-            Self::NoRefinement { .. } | Self::FormBeyondZone { .. } => "leave it out, or write a tighter zone".into(),
-            Self::FormBeyondSize { .. } => "write a tighter zone (Rule 1, envelope), or `side = \"out\"` in the zone where size and form are independent (ISO 8015)".into(),
+            Self::NoRefinement { .. } => "leave it out, or write a tighter zone".into(),
             Self::CostWithoutZone { feature } => {
                 format!("give `{feature}` a zone such as position = 0.1, or the cost to a dimension")
             }

@@ -385,20 +385,6 @@ fn every_wrong_zone_names_its_remedy() {
             "tighter zone",
         ),
         (
-            &format!("{bore}, diameter = \"t\", roundness = 0.3 }}"),
-            "",
-            "parts.block.bore.roundness",
-            "`roundness` 0.3 is wider than the tolerance 0.2",
-            "ISO 8015",
-        ),
-        (
-            &format!("{lid}, profile = 0.1, flatness = 0.2 }}"),
-            "",
-            "parts.block.lid.flatness",
-            "`flatness` 0.2 refines nothing: `profile` 0.1",
-            "tighter zone",
-        ),
-        (
             &format!("{bore}, position = {{ zone = 0.1, at = \"MMC\" }} }}"),
             "",
             "parts.block.bore.position",
@@ -546,11 +532,6 @@ seat = { on = "table.top", against = "block.foot", takes = 3, gap = 0.5 }
 [characteristics]
 height = { of = "block.lid", from = "table.top", unit = "mm" }
 "#;
-    // Form that is independent of size, and that of a middle line, may be wider than the size allows.
-    for free in ["roundness = { zone = 0.3, side = \"out\" }", "straightness = 0.3", "roundness = 0.2"] {
-        let pin = format!("pin = {{ axis = [0, 0, 0], along = \"z\", diameter = \"t\", {free} }}");
-        block(&pin, "", "");
-    }
     let study = parse(text).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(study.problem.dimensions().len(), 3, "the lid touches nothing");
     let [mean, sigma, _] = moments(&study)[0];

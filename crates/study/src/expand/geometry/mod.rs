@@ -18,7 +18,6 @@ mod size;
 mod zones;
 
 pub(super) use line::place;
-pub(super) use size::limits;
 
 use crate::error::{Fault, Faults, StudyFault};
 use crate::expand::{Expanded, Origin, Tree, Value};

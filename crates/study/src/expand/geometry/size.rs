@@ -10,7 +10,7 @@ use sensitol::assembly::formula::{Formula, FormulaSet, Meaning};
 
 /// Least and greatest size of a dimension, with its unit. Returns None if it has no band. Faults of its line are reported where the line is
 /// read.
-pub(in crate::expand) fn limits<'t>(study: &'t Tree, name: &str) -> Option<([f64; 2], Option<&'t str>)> {
+pub(super) fn limits<'t>(study: &'t Tree, name: &str) -> Option<([f64; 2], Option<&'t str>)> {
     let line = study.get("dimensions")?.get(name)?;
     let read: Result<DimensionEntry, Faults> = de::read(line);
     Some((dimension::limits(&read.ok()?)?, unit_of(line)))

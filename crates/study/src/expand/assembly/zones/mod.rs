@@ -7,7 +7,6 @@ mod datums;
 mod deviation;
 mod entry;
 mod float;
-mod form;
 pub(super) mod frame;
 mod lines;
 mod pattern;
@@ -82,7 +81,6 @@ fn part(
         let orientation = DatumList::of_orientation(feature);
         let orientation = orientation.map(|names| datums::named(feature, &names, features)).transpose()?;
         check_axis(feature, &datums)?;
-        form::check(study, feature, lines.length_unit().as_deref())?;
         let axis = datums.iter().find(|datum| datum.kind == FeatureKind::Axis);
         let facts = DatumFacts {
             tilts: datums::tilts(feature, orientation.as_ref().unwrap_or(&datums)),
