@@ -24,7 +24,6 @@ pub use crate::analysis::result::characteristic::{CharacteristicAnalysis, Missin
 pub use crate::analysis::result::contribution_figures::ContributionFigures;
 pub use crate::analysis::result::coverage_intervals::CoverageIntervals;
 pub use crate::analysis::result::distribution_figures::DistributionFigures;
-pub use crate::analysis::result::distribution_free_yield::DistributionFreeYield;
 pub use crate::analysis::result::evidence::Evidence;
 pub use crate::analysis::result::figure_basis::{FigureBases, FigureBasis};
 pub use crate::analysis::result::interaction::{Interaction, InteractionList, Missing};
@@ -50,7 +49,7 @@ use crate::analysis::sampling::recorded_failures::recorded_failures;
 use crate::analysis::sampling::sample_budget::SampleBudget;
 pub use crate::analysis::sampling::tail_sample::most_tail_points;
 use crate::analysis::sampling::{tail_sample, verification_stage};
-pub use crate::estimate::ConditionalYield;
+pub use crate::estimate::{ConditionalYield, DistributionFreeYield};
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use sensitol_numeric::capability::{EstimatedShare, InspectionRisks};

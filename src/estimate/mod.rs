@@ -15,6 +15,7 @@
 //! | `variance_shares` | Sobol' indices by exchanging inputs | verification, analysis, simulation |
 //! | `inspection` | risks of an inspection, from points of which the value is known | analysis, simulation |
 //! | `conditional_yield` | yield of the assemblies that keep another characteristic's limits | analysis, simulation |
+//! | `distribution_free_yield` | bounds of a yield over all distributions of some dimensions | analysis |
 //! | `yield_at_values` | yield at given values of one dimension | analysis |
 //! | `output_correlation` | correlation of characteristics, and their common rejects | analysis, simulation |
 //!
@@ -22,6 +23,7 @@
 
 pub(crate) mod cheap_model;
 mod conditional_yield;
+mod distribution_free_yield;
 pub(crate) mod figures;
 mod inspection;
 mod normal_space;
@@ -41,6 +43,7 @@ mod yield_at_values;
 
 pub use crate::estimate::conditional_yield::ConditionalYield;
 pub(crate) use crate::estimate::conditional_yield::conditions;
+pub use crate::estimate::distribution_free_yield::DistributionFreeYield;
 pub(crate) use crate::estimate::figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
 pub(crate) use crate::estimate::inspection::{inspected_point, inspection_risks};
 pub(crate) use crate::estimate::normal_space::{Columns, NormalSpace};

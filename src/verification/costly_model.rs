@@ -147,7 +147,8 @@ pub fn verify_by_checks(
         }
     }
     // Points of the plan without a value bound the share of the assemblies without one, as check points do.
-    let nodes = NodesOnRays::add(&space, targets, &mut rays, answers.count);
+    let plans: Vec<&[PlanNode]> = targets.iter().map(|target| target.nodes).collect();
+    let nodes = NodesOnRays::add(&space, &plans, &mut rays, answers.count);
     let figures = |c: usize| {
         let d = &answers.residuals[c];
         let with_nodes = [d.as_slice(), &nodes.residuals[c]].concat();

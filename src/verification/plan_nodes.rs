@@ -6,7 +6,6 @@
 
 use crate::estimate::NormalSpace;
 use crate::verification::check_ray::CheckRay;
-use crate::verification::costly_model::Target;
 
 /// Point of a plan, by the inputs that deviate from their means.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,10 +33,11 @@ pub(super) struct NodesOnRays {
 }
 
 impl NodesOnRays {
-    /// Adds the nodes of axes with a failed one to the rays along them, in rows from `row` on. An axis without a ray gets one.
-    pub(super) fn add(space: &NormalSpace<'_>, targets: &[Target<'_>], rays: &mut Vec<CheckRay>, row: usize) -> Self {
-        let mut found = Self { residuals: vec![Vec::new(); targets.len()], beside: vec![Vec::new(); targets.len()] };
-        let nodes = || targets.iter().flat_map(|target| target.nodes);
+    /// Adds the nodes of axes with a failed one to the rays along them, in rows from `row` on. An axis without a ray gets one. `plans` has the
+    /// nodes of every characteristic.
+    pub(super) fn add(space: &NormalSpace<'_>, plans: &[&[PlanNode]], rays: &mut Vec<CheckRay>, row: usize) -> Self {
+        let mut found = Self { residuals: vec![Vec::new(); plans.len()], beside: vec![Vec::new(); plans.len()] };
+        let nodes = || plans.iter().flat_map(|nodes| nodes.iter());
         for (j, upward) in (0..space.len()).flat_map(|j| [(j, true), (j, false)]) {
             let on = |node: &PlanNode| match *node.at {
                 [(variable, u)] if variable == j && u != 0.0 && (u > 0.0) == upward => Some(u),
@@ -59,15 +59,15 @@ impl NodesOnRays {
             for u in places {
                 let Some(z) = space.behind(j, u) else { continue };
                 rays[index].add(z.abs(), row + found.residuals[0].len());
-                for (target, residuals) in targets.iter().zip(&mut found.residuals) {
-                    let fails = target.nodes.iter().any(|node| on(node) == Some(u) && !node.has_value);
+                for (nodes, residuals) in plans.iter().zip(&mut found.residuals) {
+                    let fails = nodes.iter().any(|node| on(node) == Some(u) && !node.has_value);
                     residuals.push(if fails { f64::NAN } else { 0.0 });
                 }
             }
         }
         rays.retain(|ray| !ray.is_empty());
-        for (target, beside) in targets.iter().zip(&mut found.beside) {
-            let failed = target.nodes.iter().filter(|node| !node.has_value && node.at.len() > 1);
+        for (nodes, beside) in plans.iter().zip(&mut found.beside) {
+            let failed = nodes.iter().filter(|node| !node.has_value && node.at.len() > 1);
             beside.extend(failed.filter_map(|node| point(space, node)));
         }
         found

@@ -11,10 +11,8 @@ use std::collections::HashMap;
 
 use crate::analysis::distribution::surface_law::{law_over, surface};
 use crate::analysis::result::characteristic::CharacteristicAnalysis;
-use crate::analysis::result::distribution_free_yield::DistributionFreeYield;
-use crate::analysis::result::figure_basis::FigureBasis;
 use crate::analysis::sampling::sample_budget::SampleBudget;
-use crate::estimate::{most_points_at, yields_at};
+use crate::estimate::{DistributionFreeYield, most_points_at, yields_at};
 use crate::method::{Options, Outcome};
 use crate::problem::Problem;
 use sensitol_numeric::distribution_bounds::{DistributionPromise, LinearYield, YieldAtValue, yield_bounds};
@@ -55,10 +53,10 @@ fn distribution_free(
         false => counted(problem, options, left, c, &free),
     };
     let dimensions = free.iter().map(|&d| problem.dimensions()[d].name().to_owned()).collect();
-    let unknown = DistributionFreeYield { dimensions, interval: None, basis: None, worst: None };
+    let unknown = DistributionFreeYield { dimensions, interval: None, proven: false, worst: None };
     Some(match found {
-        Some(Bounded { interval, basis, worst }) => {
-            DistributionFreeYield { interval: Some(interval), basis: Some(basis), worst, ..unknown }
+        Some(Bounded { interval, proven, worst }) => {
+            DistributionFreeYield { interval: Some(interval), proven, worst, ..unknown }
         }
         None => unknown,
     })
@@ -67,7 +65,7 @@ fn distribution_free(
 /// Bounds that were found.
 struct Bounded {
     interval: [f64; 2],
-    basis: FigureBasis,
+    proven: bool,
     worst: Option<Vec<[f64; 2]>>,
 }
 
@@ -98,7 +96,7 @@ fn of_sum(
         &[d] => Some(in_units(problem, d, slopes[0].signum(), &found.distributions[0])),
         _ => None,
     };
-    Some(Bounded { interval: found.certified, basis: FigureBasis::Proof, worst })
+    Some(Bounded { interval: found.certified, proven: true, worst })
 }
 
 /// Distribution of a linear characteristic with some dimensions at the middles of their bands.
@@ -128,7 +126,7 @@ fn counted(problem: &Problem, options: &Options, left: &mut SampleBudget, c: usi
         yield_bounds(&promise, &CountedYield { shares })
     });
     let worst = Some(in_units(problem, d, 1.0, &least.distributions[0]));
-    Some(Bounded { interval: [least.certified[0], greatest.certified[1]], basis: FigureBasis::Points, worst })
+    Some(Bounded { interval: [least.certified[0], greatest.certified[1]], proven: false, worst })
 }
 
 /// Points of a distribution over half bands, in the unit of the dimension, ascending.

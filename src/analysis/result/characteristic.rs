@@ -140,7 +140,7 @@ impl CharacteristicAnalysis {
         }
         let value = self.distribution.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
-        // Importance samples have an interval that is no multiple of an error.
+        // The interval of importance samples does not follow from an error.
         let around = match &self.evidence.tail_sampled {
             Some(tail) => tail.interval,
             None => verdict::about(value, error)?,

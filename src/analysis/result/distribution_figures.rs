@@ -3,10 +3,9 @@
 use serde::Serialize;
 
 use crate::analysis::result::coverage_intervals::CoverageIntervals;
-use crate::analysis::result::distribution_free_yield::DistributionFreeYield;
 use crate::analysis::result::quantile_estimates::QuantileEstimates;
 use crate::analysis::result::yield_source::YieldSource;
-use crate::estimate::ConditionalYield;
+use crate::estimate::{ConditionalYield, DistributionFreeYield};
 use sensitol_numeric::capability::{Capability, CapabilityShape, InspectionRisks};
 use sensitol_numeric::json_form::{RejectIntervals, through};
 use sensitol_numeric::power::rescale;

@@ -4,7 +4,6 @@ pub(in crate::analysis) mod characteristic;
 pub(in crate::analysis) mod contribution_figures;
 pub(in crate::analysis) mod coverage_intervals;
 pub(in crate::analysis) mod distribution_figures;
-pub(in crate::analysis) mod distribution_free_yield;
 pub(in crate::analysis) mod evidence;
 pub(in crate::analysis) mod figure_basis;
 pub(in crate::analysis) mod interaction;

@@ -19,7 +19,6 @@ use crate::analysis::result::characteristic::CharacteristicAnalysis;
 use crate::analysis::result::contribution_figures::ContributionFigures;
 use crate::analysis::result::coverage_intervals::CoverageIntervals;
 use crate::analysis::result::distribution_figures::DistributionFigures;
-use crate::analysis::result::distribution_free_yield::DistributionFreeYield;
 use crate::analysis::result::evidence::Evidence;
 use crate::analysis::result::interaction::InteractionList;
 use crate::analysis::result::quantile_estimates::QuantileEstimates;
@@ -30,7 +29,7 @@ use crate::analysis::result::sobol_indices::SobolIndices;
 use crate::analysis::result::verification::Verification;
 use crate::analysis::result::yield_source::YieldSource;
 use crate::analysis::{MissingPoints, Sensitivity, SurfaceShares};
-use crate::estimate::ConditionalYield;
+use crate::estimate::{ConditionalYield, DistributionFreeYield};
 use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::ErrorEstimate;
 use sensitol_numeric::capability::{Capability, EstimatedShare, InspectionRisks, Law};
@@ -78,6 +77,17 @@ pub(in crate::analysis) struct VerificationFigures {
     pub(in crate::analysis) without_value: usize,
     /// Points in normal space that the model probably rejects, if check points refute the surface at a limit.
     pub(in crate::analysis) refuted: Option<Vec<Vec<f64>>>,
+}
+
+impl VerificationFigures {
+    /// Figures of a verification that has a value at every point and refutes no limit.
+    pub(in crate::analysis) fn complete(
+        moments: Option<MomentFigures>,
+        error_estimate: ErrorEstimate,
+        verification: Verification,
+    ) -> Self {
+        Self { moments, error_estimate, verification, without_value: 0, refuted: None }
+    }
 }
 
 /// Yield by points of the model in refuted tails.

@@ -9,7 +9,6 @@ use crate::problem::Problem;
 use crate::rare::{Beyond, MOST_TAIL_POINTS, RareCharacteristic, RefutedTail, sample_refuted};
 use crate::summary::RunSummary;
 use crate::warning::Figure;
-use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::verdict::Verdict;
 
 /// Most points within a budget: as many as `simulate` takes for rare events of an external program.
@@ -58,10 +57,7 @@ pub(in crate::analysis) fn decide(
 /// True if the check points leave a yield open: its target is not decided, and its wanted accuracy is not reached.
 fn is_open(one: &CharacteristicAnalysis, options: &Options) -> bool {
     let sampled = one.evidence.model_sampled.is_some();
-    let decided = one
-        .characteristic
-        .target_yield()
-        .is_some_and(|target| matches!(one.judge(Requirement::Yield(target)).verdict, Verdict::Met | Verdict::Missed));
+    let decided = matches!(one.verdict(), Some(Verdict::Met | Verdict::Missed));
     let wanted = beside_sigma(one, &options.accuracies).into_iter().find(|(figure, ..)| *figure == Figure::Yield);
     !sampled && !decided && wanted.is_none_or(|(_, error, wanted)| error > wanted)
 }

@@ -138,7 +138,7 @@ fn proven(outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Option<V
         sample: None,
     };
     let error_estimate = ErrorEstimate { yield_, ..estimate };
-    Some(VerificationFigures { moments: None, error_estimate, verification, without_value: 0, refuted: None })
+    Some(VerificationFigures::complete(None, error_estimate, verification))
 }
 
 /// Verifies one characteristic by a sample with `core` points in its core, within the evaluations that are left for it. Returns the
@@ -222,16 +222,7 @@ fn sample(
         quantiles,
         sample: found.sample.filter(|_| is_kept(one, options, open)).map(Arc::new),
     };
-    Some((
-        spent,
-        Some(VerificationFigures {
-            moments: replacement,
-            error_estimate,
-            verification,
-            without_value: 0,
-            refuted: None,
-        }),
-    ))
+    Some((spent, Some(VerificationFigures::complete(replacement, error_estimate, verification))))
 }
 
 /// Quantiles of a sample at the probabilities of reports. None if nothing varies: a single value is no sample of a distribution.

@@ -34,6 +34,11 @@ const ROUNDS: usize = 24;
 const SPLIT: usize = 4;
 /// Most cells: a program of this size takes some tenths of a second.
 const MOST: usize = 60_000;
+/// Rounds in a row in which the difference of both ends hardly falls, after which cells are no longer split: the bounds over a cell are what
+/// keeps them apart then.
+const STALLED: usize = 3;
+/// Part of the difference of both ends above which it hardly falls.
+const HARDLY: f64 = 0.9;
 /// Number of ranges of the mean, if sigma is bounded about an unknown mean.
 const MEANS: u32 = 32;
 
@@ -120,6 +125,7 @@ fn of_range(promise: &DistributionPromise, within: &dyn YieldAtValue, sign: f64,
     let mut cells = Cells::new(promise, within, sign, f64::midpoint(range[0], range[1]));
     let programme = Programme::of(promise, range);
     let mut found = End { certified: f64::MIN, attained: f64::MAX, points: Vec::new() };
+    let (mut last, mut stalled) = (f64::INFINITY, 0);
     for _ in 0..ROUNDS {
         let columns: Vec<Column> = cells.columns();
         let solution = programme.solve(&columns);
@@ -137,7 +143,9 @@ fn of_range(promise: &DistributionPromise, within: &dyn YieldAtValue, sign: f64,
             (found.attained, found.points) = (attained, points);
         }
         let gap = found.attained - found.certified;
-        if gap < CLOSE || cells.count() > MOST || !cells.split(&room, gap, SPLIT) {
+        stalled = if gap > HARDLY * last { stalled + 1 } else { 0 };
+        last = gap;
+        if gap < CLOSE || stalled == STALLED || cells.count() > MOST || !cells.split(&room, gap, SPLIT) {
             break;
         }
     }

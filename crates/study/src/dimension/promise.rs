@@ -20,7 +20,7 @@ fn is_any(table: &DistributionEntry) -> bool {
     KINDS.iter().any(|known| known.1 == Kind::Any && known.0 == table.kind)
 }
 
-/// What a line promises of its distribution, in half bands. Returns None if the distribution is known, or if the dimension does not vary.
+/// Promise of a line about its distribution, in half bands. Returns None if the distribution is known, or if the dimension does not vary.
 pub(super) fn promise(
     entry: &DimensionEntry,
     nominal: f64,

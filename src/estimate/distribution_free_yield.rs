@@ -2,22 +2,18 @@
 
 use serde::Serialize;
 
-use crate::analysis::result::figure_basis::FigureBasis;
-
 /// Least and greatest yield, whatever the distribution of some dimensions within their bands.
 ///
 /// Figures beside it, such as sigma and the quantiles, are those of uniform distributions in their place.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
 pub struct DistributionFreeYield {
     /// Names of the dimensions that may have any distribution.
     pub dimensions: Vec<String>,
     /// Least and greatest yield. None if they are unknown: bounds need a linear formula, or a cheap model with one such dimension.
     pub interval: Option<[f64; 2]>,
-    /// Basis of the interval: a proof for linear formulas, otherwise points of the model. None if it is unknown.
-    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
-    pub basis: Option<FigureBasis>,
+    /// True if the interval is proven, as for linear formulas. False if it comes from points of the model, or is unknown.
+    pub proven: bool,
     /// Values and shares of a distribution with the least yield. None if several dimensions may have any distribution.
     pub worst: Option<Vec<[f64; 2]>>,
 }
