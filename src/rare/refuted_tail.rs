@@ -19,6 +19,8 @@ use sensitol_numeric::time::Instant;
 
 /// Most points in refuted tails without a budget: as many as give a contact or a step at three sigmas to a factor of two.
 pub const MOST_TAIL_POINTS: usize = 400;
+/// Fewest points for each limit: fewer leave an interval that is wider than that of the check points.
+const FEWEST: u64 = 100;
 /// Relative standard error of every probability at which the points end.
 const ENOUGH: f64 = 0.1;
 /// Divisor of the number of points for those that find places: of the surface, and of what check points show.
@@ -48,7 +50,8 @@ pub(crate) struct SampledTails {
 
 /// Estimates the probabilities beyond the limits of characteristics with refuted tails, by at most `most` points of the model.
 ///
-/// Returns None if `most` is too small for an estimate, if no surface of them varies, or if the run was stopped.
+/// Returns None, without an evaluation, if `most` is too small for an estimate or no surface of them varies. There are no characteristics if
+/// the run was stopped.
 pub(crate) fn sample_refuted(
     evaluator: &Evaluator<'_>,
     outcome: &Outcome,
@@ -56,7 +59,7 @@ pub(crate) fn sample_refuted(
     most: u64,
 ) -> Option<SampledTails> {
     let (problem, run, begun) = (evaluator.problem(), evaluator.run(), Instant::now());
-    if most < LEAST || refuted.is_empty() {
+    if refuted.is_empty() {
         return None;
     }
     let known = Surrogates::known_of(problem, outcome);
@@ -64,7 +67,7 @@ pub(crate) fn sample_refuted(
     let mut targets = targets(problem, &known, &space);
     let tail_of = |target: &Target<'_>| refuted.iter().find(|tail| tail.characteristic == target.characteristic);
     targets.retain(|target| tail_of(target).is_some());
-    if targets.is_empty() {
+    if targets.is_empty() || most < FEWEST * targets.len() as u64 {
         return None;
     }
     let options = RareOptions::default().with_samples(most).with_seed(evaluator.seed()).with_until(ENOUGH);
@@ -76,19 +79,22 @@ pub(crate) fn sample_refuted(
     let mut search = Search::new(&targets, places, (options.samples, options.seed));
     for (index, target) in targets.iter().enumerate() {
         let shown = tail_of(target).map_or(&[][..], |tail| &tail.points);
-        let rejects = rejected(target, shown, &mut model);
-        search.place(index, &rejects, budget / targets.len(), &mut model);
+        let room = budget / targets.len();
+        let rejects = rejected(target, &shown[..shown.len().min(room / BEYOND.len())], &mut model);
+        search.place(index, &rejects, room, &mut model);
     }
     let explored = Explored::new(&targets, &search.reached(), options.samples, !options.seed, &mut model);
-    let left = (most.saturating_sub(model.answered)) as usize;
+    let left = most.saturating_sub(model.answered);
+    if left < LEAST || run.stopped() {
+        let points = model.answered;
+        return Some(SampledTails { characteristics: Vec::new(), points, ledger: model.evaluator.into_ledger() });
+    }
+    let left = left as usize;
     search.learn(&explored, left / LEARNING, &mut model);
     let mut sampled = SampledStages { problem, options: &options, run, begun, model, search, reached: None };
     sampled.draw(&|_| {});
     let SampledStages { model, search, .. } = sampled;
-    if run.stopped() {
-        return None;
-    }
-    let sampled: Vec<usize> = targets.iter().map(|target| target.characteristic).collect();
+    let sampled: Vec<usize> = targets.iter().filter(|_| !run.stopped()).map(|target| target.characteristic).collect();
     let characteristics = search.characteristics(&model, false).into_iter().enumerate();
     let characteristics = characteristics.filter(|(c, _)| sampled.contains(c)).collect();
     Some(SampledTails { characteristics, points: model.answered, ledger: model.evaluator.into_ledger() })

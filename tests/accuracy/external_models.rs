@@ -295,3 +295,23 @@ fn a_failed_node_of_a_plan_bounds_the_share_without_a_value() {
         assert!(low < 1.0 - 0.0261 && low > 0.4, "{method}: {low}");
     }
 }
+
+/// Twelve limits that check points refute, within small budgets: the run neither ends in a panic nor takes more points than the budget.
+#[test]
+fn many_refuted_limits_keep_the_budget() {
+    let names: Vec<String> = (0..12).map(|k| format!("y{k}")).collect();
+    let dimensions: Vec<Dimension> = (0..3).map(|j| Dimension::normal(format!("x{j}"), 0.0, 3.0).unwrap()).collect();
+    let contacts = |x: &[f64], out: &mut [f64]| {
+        for (k, y) in out.iter_mut().enumerate() {
+            *y = x[0] + x[1] + 20.0 * (x[k % 3] - 2.5).max(0.0) + 1e-3 * k as f64;
+        }
+    };
+    let problem = Problem::new(dimensions, Closure::new(names.clone(), contacts)).unwrap();
+    let limits = SpecLimits::new(Some(-6.0), Some(6.0)).unwrap();
+    let asked: Vec<Characteristic> = names.iter().map(|name| Characteristic::new(name).with_limits(limits)).collect();
+    let (problem, _) = costly(&problem.asking(asked).unwrap());
+    for budget in (30..=200).step_by(10).chain([1300, 3000]) {
+        let found = analyze(&problem, &Options::from(Method::Auto).with_budget(budget)).unwrap();
+        assert!(found.run.evaluations <= budget as u64, "{budget}: {}", found.run.evaluations);
+    }
+}

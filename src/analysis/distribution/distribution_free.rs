@@ -6,17 +6,18 @@
 //! | another one of a cheap model, one such dimension | points of the model at [`PLACES`] values | from points |
 //! | others | unknown | unknown |
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 
 use crate::analysis::distribution::surface_law::{law_over, surface};
 use crate::analysis::result::characteristic::CharacteristicAnalysis;
+use crate::analysis::sampling::measured_interval::samples_of;
 use crate::analysis::sampling::sample_budget::SampleBudget;
 use crate::estimate::{DistributionFreeYield, most_points_at, yields_at};
 use crate::method::{Options, Outcome};
 use crate::problem::Problem;
 use sensitol_numeric::distribution_bounds::{DistributionPromise, LinearYield, YieldAtValue, yield_bounds};
-use sensitol_numeric::law::SurfaceLaw;
+use sensitol_numeric::law::{Branch, SurfaceLaw};
 use sensitol_numeric::surrogate::Univariate;
 
 /// Values of a dimension at which the yield of a characteristic that is not linear is counted: a part of 64 of the band, so that a yield
@@ -44,13 +45,19 @@ fn distribution_free(
     (c, one): (usize, &CharacteristicAnalysis),
 ) -> Option<DistributionFreeYield> {
     let promised = |&d: &usize| outcome.plan.depends(c, d) && problem.dimensions()[d].convention().promise.is_some();
-    let free: Vec<usize> = outcome.plan.varying().iter().copied().filter(promised).collect();
+    let linear = outcome.fitted[c].proof.is_some_and(|proof| proof.degree <= 1);
+    // A slope of 0 leaves a linear characteristic as it is, whatever the distribution.
+    let acts = |d: &usize| !(linear && one.sensitivities[*d].first == Some(0.0));
+    let free: Vec<usize> = outcome.plan.varying().iter().copied().filter(promised).filter(acts).collect();
     if free.is_empty() || !one.characteristic.limits().exist() {
         return None;
     }
-    let found = match one.is_proven_linear() {
+    let found = match linear {
+        // Measured values leave the distribution of the rest uncertain, and bounds would be those of the sample.
+        _ if !samples_of(problem, outcome, c).is_empty() => None,
         true => of_sum(problem, outcome, (c, one), &free),
-        false => counted(problem, options, left, c, &free),
+        false if options.verifies(problem.function().signature()) => counted(problem, options, left, c, &free),
+        false => None,
     };
     let dimensions = free.iter().map(|&d| problem.dimensions()[d].name().to_owned()).collect();
     let unknown = DistributionFreeYield { dimensions, interval: None, proven: false, worst: None };
@@ -83,20 +90,28 @@ fn of_sum(
         let facts = problem.dimensions()[d].convention().promise?;
         Some((slope / reach, DistributionPromise::over([-1.0, 1.0], &facts).ok()?))
     };
-    let promises = free.iter().zip(&slopes).filter(|(_, slope)| **slope != 0.0).map(promise);
+    let promises = free.iter().zip(&slopes).map(promise);
     let sum = DistributionPromise::of_sum(&promises.collect::<Option<Vec<_>>>()?).ok()?;
     let rest = law_of_rest(problem, outcome, c, free)?;
-    let known = RefCell::new(HashMap::new());
+    let (known, error) = (RefCell::new(HashMap::new()), Cell::new(0.0f64));
     // The cells of the band meet at the same places again and again, and a tail of the rest is an integral.
-    let below = |y: f64| *known.borrow_mut().entry(y.to_bits()).or_insert_with(|| rest.below(y).value);
+    let tails = |y: f64| {
+        *known.borrow_mut().entry(y.to_bits()).or_insert_with(|| {
+            let (below, above) = (rest.below(y), rest.above(y));
+            error.set(error.get().max(below.error + above.error));
+            [below.value, above.value]
+        })
+    };
     let limits = one.characteristic.limits();
-    let within = LinearYield { slope: reach, offset: 0.0, limits: [limits.lower(), limits.upper()], below: &below };
+    let within = LinearYield { slope: reach, offset: 0.0, limits: [limits.lower(), limits.upper()], tails: &tails };
     let found = yield_bounds(&sum, &within);
+    let [least, greatest] = found.certified;
+    let interval = [(least - error.get()).max(0.0), (greatest + error.get()).min(1.0)];
     let worst = match free {
         &[d] => Some(in_units(problem, d, slopes[0].signum(), &found.distributions[0])),
         _ => None,
     };
-    Some(Bounded { interval: found.certified, proven: true, worst })
+    Some(Bounded { interval, proven: rest.branch() != Branch::Sampled, worst })
 }
 
 /// Distribution of a linear characteristic with some dimensions at the middles of their bands.

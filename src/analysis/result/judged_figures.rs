@@ -13,13 +13,14 @@ impl RequirementFigures for CharacteristicAnalysis {
     /// Yield with [its interval](CharacteristicAnalysis::yield_interval). Of a characteristic with a condition it is the yield of the
     /// assemblies that count.
     fn yield_(&self) -> JudgedFigure {
-        // The worst distribution decides, not the one that stands in for it.
-        if let Some(free) = &self.distribution.distribution_free_yield {
-            return JudgedFigure { value: free.interval.map(|[least, _]| least), interval: free.interval };
-        }
         if self.characteristic.given().is_some() {
             let known = self.distribution.conditional.as_ref();
             return JudgedFigure { value: known.map(|of| of.value), interval: known.and_then(|of| of.interval) };
+        }
+        // The worst distribution decides, not the one that stands in for it. Bounds from points need not hold between them.
+        if let Some(free) = &self.distribution.distribution_free_yield {
+            let interval = free.interval.map(|[least, greatest]| [if free.proven { least } else { 0.0 }, greatest]);
+            return JudgedFigure { value: free.interval.map(|[least, _]| least), interval };
         }
         let value = self.distribution.capability.and_then(|of| of.yield_());
         JudgedFigure { value, interval: self.yield_interval() }

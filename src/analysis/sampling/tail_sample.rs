@@ -9,6 +9,7 @@ use crate::problem::Problem;
 use crate::rare::{Beyond, MOST_TAIL_POINTS, RareCharacteristic, RefutedTail, sample_refuted};
 use crate::summary::RunSummary;
 use crate::warning::Figure;
+use sensitol_numeric::sampling::clopper_pearson;
 use sensitol_numeric::verdict::Verdict;
 
 /// Most points within a budget: as many as `simulate` takes for rare events of an external program.
@@ -75,7 +76,10 @@ fn taken(one: &CharacteristicAnalysis, found: &RareCharacteristic, points: u64) 
     let beyond = [share(&found.below, of_law[0]), share(&found.above, of_law[1])];
     let intervals = [&found.below, &found.above].map(|beyond| beyond.as_ref().map(|beyond| beyond.interval));
     let yield_ = (1.0 - beyond.iter().flatten().sum::<f64>()).clamp(0.0, 1.0);
-    let lost = [&found.below, &found.above].into_iter().flatten().map(|of| of.bounds[1] - of.bounds[0]).sum();
+    let drawn: f64 = [&found.below, &found.above].into_iter().flatten().map(|of| of.bounds[1] - of.bounds[0]).sum();
+    // Points that searched for the tail may fail where none is drawn. More points lie in the tail than assemblies.
+    let unmet = if found.failed > 0 { clopper_pearson(0.0, points as f64)[1] } else { 0.0 };
+    let lost = drawn.max(unmet).min(1.0);
     let sampled = SampledTail { points, failed: found.failed, yield_, interval, beyond, intervals };
     Some(TailFigures { sampled, lost })
 }

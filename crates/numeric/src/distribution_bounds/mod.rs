@@ -34,6 +34,8 @@ const ROUNDS: usize = 24;
 const SPLIT: usize = 4;
 /// Most cells: a program of this size takes some tenths of a second.
 const MOST: usize = 60_000;
+/// Most cells of a mixture of uniform distributions, whose mean shares over a cell are bounded in many slices.
+const MOST_OF_MIXTURES: usize = 1 << 10;
 /// Rounds in a row in which the difference of both ends hardly falls, after which cells are no longer split: the bounds over a cell are what
 /// keeps them apart then.
 const STALLED: usize = 3;
@@ -72,7 +74,7 @@ pub struct YieldBounds {
 /// use sensitol_numeric::distribution_bounds::{DistributionPromise, LinearYield, yield_bounds};
 /// // Chebyshev: at least 1 - 1/k^2 lies within k sigma of a known mean. The band is wide enough not to matter.
 /// let promise = DistributionPromise::new([-100.0, 100.0])?.with_mean([0.0, 0.0])?.with_sigma(1.0)?;
-/// let within = LinearYield { slope: 1.0, offset: 0.0, limits: [Some(-2.0), Some(2.0)], below: &|x| f64::from(u8::from(x > 0.0)) };
+/// let within = LinearYield { slope: 1.0, offset: 0.0, limits: [Some(-2.0), Some(2.0)], tails: &|x: f64| [x > 0.0, x < 0.0].map(|of| f64::from(u8::from(of))) };
 /// let found = yield_bounds(&promise, &within);
 /// assert!((found.certified[0] - 0.75).abs() < 1e-5 && found.certified[1] == 1.0);
 /// # Ok::<(), sensitol_numeric::distribution_bounds::PromiseFault>(())
@@ -125,6 +127,7 @@ fn of_range(promise: &DistributionPromise, within: &dyn YieldAtValue, sign: f64,
     let mut cells = Cells::new(promise, within, sign, f64::midpoint(range[0], range[1]));
     let programme = Programme::of(promise, range);
     let mut found = End { certified: f64::MIN, attained: f64::MAX, points: Vec::new() };
+    let most = if promise.is_unimodal() { MOST_OF_MIXTURES } else { MOST };
     let (mut last, mut stalled) = (f64::INFINITY, 0);
     for _ in 0..ROUNDS {
         let columns: Vec<Column> = cells.columns();
@@ -145,7 +148,12 @@ fn of_range(promise: &DistributionPromise, within: &dyn YieldAtValue, sign: f64,
         let gap = found.attained - found.certified;
         stalled = if gap > HARDLY * last { stalled + 1 } else { 0 };
         last = gap;
-        if gap < CLOSE || stalled == STALLED || cells.count() > MOST || !cells.split(&room, gap, SPLIT) {
+        if gap < CLOSE
+            || stalled == STALLED
+            || cells.count() > most
+            || within.is_stopped()
+            || !cells.split(&room, gap, SPLIT)
+        {
             break;
         }
     }
@@ -160,15 +168,15 @@ pub struct LinearYield<'l> {
     pub offset: f64,
     /// Lower and upper limit.
     pub limits: [Option<f64>; 2],
-    /// Probability that the rest is below a value.
-    pub below: &'l dyn Fn(f64) -> f64,
+    /// Probabilities that the rest is below a value, and above it. A rest that lies on the value is neither.
+    pub tails: &'l dyn Fn(f64) -> [f64; 2],
 }
 
 impl LinearYield<'_> {
-    /// Shares below the lower and above the upper limit at a place `slope x + offset`. A rest that does not vary lies on a limit within it.
+    /// Shares below the lower and above the upper limit at a place `slope x + offset`.
     fn rejects(&self, place: f64) -> [f64; 2] {
-        let below = self.limits[0].map_or(0.0, |lower| (self.below)(lower - place));
-        let above = self.limits[1].map_or(0.0, |upper| 1.0 - (self.below)((upper - place).next_up()));
+        let below = self.limits[0].map_or(0.0, |lower| (self.tails)(lower - place)[0]);
+        let above = self.limits[1].map_or(0.0, |upper| (self.tails)(upper - place)[1]);
         [below, above]
     }
 }

@@ -8,12 +8,13 @@ use sensitol_numeric::distribution_bounds::{
 /// Certified and attained ends differ by 1e-6 unless the mean has a range.
 const CLOSE: f64 = 3e-6;
 
-fn step(x: f64) -> f64 {
-    f64::from(u8::from(x > 0.0))
+/// Tails of a rest that is 0.
+fn step(x: f64) -> [f64; 2] {
+    [x > 0.0, x < 0.0].map(|of| f64::from(u8::from(of)))
 }
 
 fn within(promise: &DistributionPromise, limits: [Option<f64>; 2]) -> YieldBounds {
-    yield_bounds(promise, &LinearYield { slope: 1.0, offset: 0.0, limits, below: &step })
+    yield_bounds(promise, &LinearYield { slope: 1.0, offset: 0.0, limits, tails: &step })
 }
 
 fn near(found: f64, expected: f64) {
@@ -85,7 +86,7 @@ fn an_ordinary_rest_stays_as_it_is() {
     let below = |x: f64| standard_normal::cdf(x / sigma);
     let limits = [Some(-0.5), Some(0.5)];
     let yield_at = |x: f64| below(0.5 - x) - below(-0.5 - x);
-    let sum = LinearYield { slope: 2.0, offset: 0.0, limits, below: &below };
+    let sum = LinearYield { slope: 2.0, offset: 0.0, limits, tails: &|x: f64| [below(x), below(-x)] };
     let promise = DistributionPromise::new([-0.2, 0.2]).unwrap();
     let found = yield_bounds(&promise, &sum);
     near(found.certified[0], yield_at(0.4));
@@ -94,7 +95,7 @@ fn an_ordinary_rest_stays_as_it_is() {
     let centred = promise.clone().with_mean([0.0, 0.0]).unwrap();
     near(yield_bounds(&centred, &sum).certified[0], yield_at(0.4));
     // Hoeffding (1963), theorem 2, for the mean of one value in a band: the bound holds for all that the program covers.
-    let one_sided = LinearYield { slope: 1.0, offset: 0.0, limits: [None, Some(0.1)], below: &step };
+    let one_sided = LinearYield { slope: 1.0, offset: 0.0, limits: [None, Some(0.1)], tails: &step };
     let hoeffding = 1.0 - (-2.0 * 0.1f64.powi(2) / 0.4f64.powi(2)).exp();
     assert!(yield_bounds(&centred, &one_sided).certified[0] >= hoeffding - 1e-9);
 }
@@ -103,7 +104,12 @@ fn an_ordinary_rest_stays_as_it_is() {
 #[test]
 fn certified_ends_hold_for_distributions_of_the_promise() {
     let below = |x: f64| standard_normal::cdf(x / 0.05);
-    let sum = LinearYield { slope: 1.0, offset: 0.02, limits: [Some(-0.15), Some(0.12)], below: &below };
+    let sum = LinearYield {
+        slope: 1.0,
+        offset: 0.02,
+        limits: [Some(-0.15), Some(0.12)],
+        tails: &|x: f64| [below(x), below(-x)],
+    };
     let promise =
         DistributionPromise::new([-0.2, 0.2]).unwrap().with_mean([-0.03, 0.05]).unwrap().with_sigma(0.08).unwrap();
     let found = yield_bounds(&promise, &sum);
@@ -126,4 +132,13 @@ fn promises_that_contradict_themselves_are_refused() {
     assert!(matches!(band().with_mean([0.2, 1.2]), Err(PromiseFault::Mean { .. })));
     assert!(matches!(band().with_sigma(0.0), Err(PromiseFault::Sigma { .. })));
     assert!(matches!(band().symmetric().unwrap().with_mean([0.6, 0.7]), Err(PromiseFault::Symmetric { .. })));
+}
+
+/// A limit that the end of the band reaches is kept there, on either side.
+#[test]
+fn the_end_of_a_band_on_a_limit_is_kept() {
+    let promise = DistributionPromise::new([-1.0, 1.0]).unwrap();
+    for limits in [[None, Some(1.0)], [Some(-1.0), None], [Some(-1.0), Some(1.0)]] {
+        assert_eq!(within(&promise, limits).certified, [1.0, 1.0], "{limits:?}");
+    }
 }

@@ -98,7 +98,7 @@ pub(crate) fn distribution_free(of: &DistributionFreeYield) -> String {
         true => format!(", at most {} %", plain((BOUND_STEPS * greatest).ceil() / 1e4)),
         false => String::new(),
     };
-    let checked = if of.proven { "" } else { " (by points of the model)" };
+    let checked = if of.proven { "" } else { " (at 65 of its values, not proven)" };
     format!("at least {} %{most}, whatever the distribution of {names}{checked}", rounded_down(least))
 }
 

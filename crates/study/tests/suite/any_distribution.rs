@@ -121,6 +121,55 @@ proptest! {
     }
 }
 
+/// Limits that the ends of all bands reach exactly are kept, whatever the distributions.
+#[test]
+fn a_worst_case_on_its_limits_has_a_yield_of_one() {
+    let free = bounds(
+        "[dimensions]
+         a = { nominal = 5, tolerance = 0.1, distribution = \"any\" }
+         b = { nominal = 3, tolerance = 0.2, distribution = \"any\" }
+         [characteristics]
+         y = { formula = \"a - b\", lower = 1.7, upper = 2.3 }",
+    );
+    assert_eq!(free.interval, Some([1.0, 1.0]));
+}
+
+/// A dimension of slope 0 leaves the ordinary yield.
+#[test]
+fn a_dimension_without_effect_changes_nothing() {
+    let one = analysed(
+        "dimensions = { a = { nominal = 0, tolerance = 1, distribution = \"any\" }, b = { nominal = 0, sigma = 1 } }
+         [characteristics]
+         y = { formula = \"0*a + b\", upper = 2 }",
+    );
+    assert!(one.distribution.distribution_free_yield.is_none());
+    close(one.distribution.capability.unwrap().yield_().unwrap(), 0.9772498680518208, 1e-9, 1.0);
+}
+
+/// The yield of those that keep another limit is unknown: the worst distribution leaves none of them.
+#[test]
+fn a_condition_leaves_the_yield_open() {
+    let text = "dimensions = { a = { nominal = 0, tolerance = 0.1, distribution = \"any\" }, b = { nominal = 0, sigma = 0.1 } }
+                [characteristics]
+                base = { formula = \"b - 2*a\", lower = 0 }
+                y = { formula = \"a + b\", upper = 0.2, given = \"base\", target_yield = 0.5 }";
+    let study = Study::from_toml(text, "study.toml").unwrap();
+    let found = analyze(&study.problem, &Method::Auto.into()).unwrap();
+    assert_eq!(found.characteristics[1].verdict(), Some(sensitol_numeric::verdict::Verdict::Inconclusive));
+}
+
+/// A window of rejects between the values at which a curved formula is counted: the bounds are not proven, and the target is not met.
+#[test]
+fn bounds_from_points_never_meet_a_target() {
+    let one = analysed(
+        "dimensions = { a = { nominal = 0, tolerance = 0.1, distribution = \"any\" }, b = { nominal = 0, sigma = 0.1 } }
+         [characteristics]
+         y = { formula = \"10*exp(-((a - 0.0515)/0.0003)^2) + b\", upper = 0.5, target_yield = 0.99 }",
+    );
+    assert!(!one.distribution.distribution_free_yield.as_ref().unwrap().proven);
+    assert_eq!(one.verdict(), Some(sensitol_numeric::verdict::Verdict::Inconclusive));
+}
+
 #[test]
 fn samples_and_allocations_refuse_it() {
     let study = Study::from_toml(
