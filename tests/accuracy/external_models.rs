@@ -299,12 +299,10 @@ fn a_failed_node_of_a_plan_bounds_the_share_without_a_value() {
 /// Twelve limits that check points refute, within small budgets: the run neither ends in a panic nor takes more points than the budget.
 #[test]
 fn many_refuted_limits_keep_the_budget() {
-    let names: Vec<String> = (0..12).map(|k| format!("y{k}")).collect();
+    let names: [String; 12] = std::array::from_fn(|k| format!("y{k}"));
     let dimensions: Vec<Dimension> = (0..3).map(|j| Dimension::normal(format!("x{j}"), 0.0, 3.0).unwrap()).collect();
-    let contacts = |x: &[f64], out: &mut [f64]| {
-        for (k, y) in out.iter_mut().enumerate() {
-            *y = x[0] + x[1] + 20.0 * (x[k % 3] - 2.5).max(0.0) + 1e-3 * k as f64;
-        }
+    let contacts = |x: &[f64]| -> [f64; 12] {
+        std::array::from_fn(|k| x[0] + x[1] + 20.0 * (x[k % 3] - 2.5).max(0.0) + 1e-3 * k as f64)
     };
     let problem = Problem::new(dimensions, Closure::new(names.clone(), contacts)).unwrap();
     let limits = SpecLimits::new(Some(-6.0), Some(6.0)).unwrap();

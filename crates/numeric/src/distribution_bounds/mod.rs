@@ -148,12 +148,7 @@ fn of_range(promise: &DistributionPromise, within: &dyn YieldAtValue, sign: f64,
         let gap = found.attained - found.certified;
         stalled = if gap > HARDLY * last { stalled + 1 } else { 0 };
         last = gap;
-        if gap < CLOSE
-            || stalled == STALLED
-            || cells.count() > most
-            || within.is_stopped()
-            || !cells.split(&room, gap, SPLIT)
-        {
+        if gap < CLOSE || stalled == STALLED || cells.count() > most || !cells.split(&room, gap, SPLIT) {
             break;
         }
     }
