@@ -304,9 +304,10 @@ fn many_refuted_limits_keep_the_budget() {
     let contacts = |x: &[f64]| -> [f64; 12] {
         std::array::from_fn(|k| x[0] + x[1] + 20.0 * (x[k % 3] - 2.5).max(0.0) + 1e-3 * k as f64)
     };
-    let problem = Problem::new(dimensions, Closure::new(names.clone(), contacts)).unwrap();
+    let problem = Problem::new(dimensions, Closure::new(names.each_ref().map(|name| name.as_str()), contacts)).unwrap();
     let limits = SpecLimits::new(Some(-6.0), Some(6.0)).unwrap();
-    let asked: Vec<Characteristic> = names.iter().map(|name| Characteristic::new(name).with_limits(limits)).collect();
+    let asked: Vec<Characteristic> =
+        names.iter().map(|name| Characteristic::new(name.as_str()).with_limits(limits)).collect();
     let (problem, _) = costly(&problem.asking(asked).unwrap());
     for budget in (30..=200).step_by(10).chain([1300, 3000]) {
         let found = analyze(&problem, &Options::from(Method::Auto).with_budget(budget)).unwrap();
