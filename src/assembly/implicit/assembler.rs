@@ -269,7 +269,7 @@ impl Assembler {
         let worst = search.worst(&stuck.values);
         let state = (search.given, &stuck.u[..]);
         if let Some(joint) = system.open_joint(set, state, &stuck.values, worst) {
-            return AssemblyFailure::OpenJoint { nominal, joint, followed };
+            return AssemblyFailure::OpenJoint { nominal, joint: Box::new(joint), followed };
         }
         AssemblyFailure::Open {
             nominal,

@@ -31,7 +31,7 @@ pub enum AssemblyFailure {
         /// True for the nominal state, which is sought from the start values.
         nominal: bool,
         /// Joint with the greatest residual in the best position found, relative to the size of its terms.
-        joint: OpenJoint,
+        joint: Box<OpenJoint>,
         /// Part of the way from the nominal dimensions to the point along which the state could be followed.
         followed: Option<f64>,
     },

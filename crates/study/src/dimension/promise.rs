@@ -44,7 +44,7 @@ pub(super) fn promise(
         ));
     }
     let sigma = match &table.sigma_at_most {
-        Some(given) if !(*given.get_ref() > 0.0) => {
+        Some(given) if !given.get_ref().is_finite() || *given.get_ref() <= 0.0 => {
             let found = StudyFault::OutOfRange { value: *given.get_ref(), range: "above 0" };
             return Err(fault(given.span(), within("sigma_at_most"), found));
         }
@@ -55,7 +55,7 @@ pub(super) fn promise(
         Some(given) => {
             let ends = given.get_ref().map(|end| (end - middle) / half);
             // The allowance admits an end of the band in spite of rounding.
-            let outside = ends.iter().position(|end| !(end.abs() <= 1.0 + 1e-9));
+            let outside = ends.iter().position(|end| !end.is_finite() || end.abs() > 1.0 + 1e-9);
             if let Some(end) = outside {
                 let value = given.get_ref()[end];
                 let found = StudyFault::OutOfRange { value, range: "within the tolerance band" };
