@@ -38,7 +38,7 @@ impl Assembly {
     ///     tilt: None,
     /// };
     /// let arm = RigidPart { name: "arm".into(), ground: false, at: [0.0; 3], turned: [0.0; 3], features: vec![tip] };
-    /// let assembly = Assembly { parts: vec![arm], joints: Vec::new(), measures: Vec::new(), length_unit: None };
+    /// let assembly = Assembly { parts: vec![arm], joints: Vec::new(), measures: Vec::new(), length_unit: None, shown_unit: None };
     /// // A quarter turn about z, and 5 along x.
     /// let turn = [0.0, 0.0, std::f64::consts::FRAC_PI_2];
     /// let pose = PartPose { part: "arm".into(), rotation: turn, translation: [5.0, 0.0, 0.0], start: None };
