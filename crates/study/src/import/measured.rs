@@ -1,6 +1,6 @@
 //! Measured tables: a column for each dimension, a row for each part or assembly.
 
-use crate::import::columns::{ColumnRole, Heading, heading, unit_of};
+use crate::import::columns::{ColumnRole, Heading, heading, plain, unit_of};
 use crate::import::fault::{ImportFault, ImportProblem};
 use crate::import::sheet::{Content, Sheet, address};
 use crate::import::stack::{ImportOptions, Imported};
@@ -13,6 +13,25 @@ use sensitol::assembly::formula::is_plain;
 const MISSING: [&str; 4] = ["-", "na", "n/a", "nan"];
 /// Headers of columns with the number of a part.
 const SERIALS: [&str; 8] = ["serial", "serial no", "sn", "part no", "part id", "teilenummer", "seriennummer", "id"];
+
+/// Headers of columns with the number of a part, where the numbers are whole and rise by 1. Other numbers are measured values of the part.
+const COUNTED: [&str; 15] = [
+    "part",
+    "part number",
+    "part nr",
+    "item",
+    "component",
+    "sample",
+    "teil",
+    "teile",
+    "teil nr",
+    "teile nr",
+    "teilenr",
+    "bauteil",
+    "bauteil nr",
+    "bauteilnr",
+    "probe",
+];
 
 /// A column of measured values.
 struct MeasuredColumn {
@@ -46,7 +65,9 @@ pub fn measured(
             return Err(ImportFault::of(address(*line, place), ImportProblem::NoNames));
         }
         match column(name, place, rows) {
-            Some(column) if !is_left_out(name, cell, options) => columns.push(column),
+            Some(column) if !is_left_out(name, cell, options) && !counts_parts(name, place, rows, options) => {
+                columns.push(column);
+            }
             _ => left_out.push(name.clone()),
         }
     }
@@ -99,6 +120,20 @@ fn is_left_out(name: &str, cell: &Content, options: &ImportOptions) -> bool {
     let own = || matches!(heading(cell), Some((Heading::Role(ColumnRole::Ignore), _)));
     given == Some(ColumnRole::Ignore)
         || given.is_none() && (own() || SERIALS.contains(&name.trim().to_lowercase().as_str()))
+}
+
+/// True for a column that counts the parts: its header says so, and its whole numbers rise by 1.
+fn counts_parts(name: &str, place: usize, rows: &[(u64, Vec<Content>)], options: &ImportOptions) -> bool {
+    if !COUNTED.contains(&plain(name).as_str()) || options.columns.iter().any(|(_, header)| header == name.trim()) {
+        return false;
+    }
+    let whole = |cell: &Content| match cell {
+        Content::Number { value, percent: false, .. } if value.fract() == 0.0 => Some(*value),
+        Content::Text(text) => crate::table::clean(text).parse::<u32>().ok().map(f64::from),
+        _ => None,
+    };
+    let numbers: Option<Vec<f64>> = rows.iter().map(|(_, row)| row.get(place).and_then(whole)).collect();
+    numbers.is_some_and(|numbers| numbers.windows(2).all(|pair| pair[1] - pair[0] == 1.0))
 }
 
 /// Column of measured values. Returns None if a cell is neither a number nor missing, or if no cell is a number.
