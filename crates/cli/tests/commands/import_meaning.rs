@@ -186,6 +186,42 @@ fn totals_and_limits_stand_below_the_rows() {
     assert!(text.contains("lower = 0.2, upper = 0.8"), "{text}");
 }
 
+/// Limits in the row of the nominal values, and in one cell of their own.
+#[test]
+fn rows_of_limits_are_no_dimensions() {
+    let stack = "Bezeichnung;Richtung;Nennmaß;Toleranz\na;+;10;0,1\nb;-;9,5;0,1\n";
+    for row in ["Grenzmaße;;0,1;0,9", "Grenzen;0,1 .. 0,9", "Grenzwerte;;0,1 .. 0,9;", "Grenzen;;;0,1 .. 0,9"] {
+        let [text, read] = imported(&format!("{stack}{row}\n"), &[]);
+        assert!(text.contains("lower = 0.1, upper = 0.9 }"), "{row}: {text}");
+        assert!(read.contains("2 rows, 1 subtracted, no unit, limits 0.1 .. 0.9 from row 4"), "{row}: {read}");
+    }
+    let error = import(&format!("{stack}Grenzen;;0,5;±0,4\n"), &[]).unwrap_err();
+    assert!(error.contains("this row does not hold two numbers") && error.contains("another name"), "{error}");
+}
+
+/// The sign of a nominal value without a column of directions is its direction, so that +0/-0.013 are deviations of the shaft itself.
+#[test]
+fn a_negative_nominal_keeps_its_own_deviations() {
+    let table = "Bezeichnung;Nennmaß;Toleranz\nBohrung;25,02;0,01\nWelle;-24,98;+0/-0,013\n";
+    let [text, read] = imported(table, &[]);
+    let study = Study::from_toml(&text, "stack").unwrap();
+    let found = analyze(&study.problem, &Method::Full.into()).unwrap();
+    // Independent: 25.02 - (24.98 - 0.0065); with mirrored deviations it would be 0.0335.
+    close(found.characteristics[0].moments.unwrap().mean(), 0.0465, 1e-13, 25.0);
+    // 25.01 - 24.98 and 25.03 - 24.967.
+    let ([nominal, low, high], _) = figures(&text);
+    close(nominal, 0.04, 1e-13, 25.0);
+    close(low, 0.03, 1e-13, 25.0);
+    close(high, 0.063, 1e-13, 25.0);
+    assert!(text.contains("nominal = 24.98") && text.contains("tolerance = [-0.013, 0.0]"), "{text}");
+    assert!(read.contains("taken as its direction: `Welle` of row 3 is 24.98, subtracted"), "{read}");
+    assert!(read.contains("2 rows, 1 one-sided, 1 subtracted"), "{read}");
+    // A column of directions says the direction, so that a negative value is one.
+    let table = "name,nominal,tol,dir\na,-1,+0.2/0,+\nb,3,0.1,-\n";
+    let [text, _] = imported(table, &[]);
+    assert!(text.contains("nominal = -1.0") && text.contains("tolerance = [0.0, 0.2]"), "{text}");
+}
+
 #[test]
 fn dimensions_without_tolerance_are_asked_for() {
     let table = "name,nominal,tol\na,10,0.1\nshim,2,\n";
@@ -306,4 +342,23 @@ fn a_measured_table_becomes_a_study() {
     std::fs::write(at("numbers.csv"), "1,2\n3,4\n").unwrap();
     let output = sensitol(&["import", &at("numbers.csv"), "--measured"]).output().unwrap();
     assert!(String::from_utf8(output.stderr).unwrap().contains("the first row names the columns"));
+}
+
+/// Numbers of parts are no measured values: whole numbers in steps of 1 below a header of parts.
+#[test]
+fn numbers_of_parts_are_left_out_of_measured_tables() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lot.csv");
+    let measured = |header: &str, step: usize| {
+        let rows: String = (0..20).map(|row| format!("{};12,{}\n", 7 + step * row, 39 + row % 5)).collect();
+        std::fs::write(&path, format!("{header};width\n{rows}")).unwrap();
+        let output = sensitol(&["import", path.to_str().unwrap(), "--measured"]).output().unwrap();
+        String::from_utf8(output.stderr).unwrap()
+    };
+    for header in ["Teil", "part", "Bauteil", "Teile-Nr", "Teile-Nr.", "Nr", "ID"] {
+        let read = measured(header, 1);
+        assert!(read.contains("20 rows, 1 measured dimensions"), "{header}: {read}");
+        assert!(read.contains(&format!("columns without measured values were left out: {header}")), "{read}");
+    }
+    assert!(measured("Teil", 2).contains("20 rows, 2 measured dimensions"));
 }

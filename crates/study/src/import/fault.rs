@@ -205,6 +205,12 @@ pub enum ImportProblem {
         /// The upper limit.
         upper: f64,
     },
+    /// A row of limits without two numbers.
+    #[error("`{name}` stands before both limits of the characteristic, and this row does not hold two numbers")]
+    NoLimits {
+        /// Name of the row.
+        name: String,
+    },
     /// A deviation on one side only.
     #[error("the upper and the lower deviation belong together, and one of them is missing")]
     OneDeviation,
@@ -273,6 +279,9 @@ impl ImportProblem {
                 "leave the nominal value of a total empty, or give a dimension another name".to_owned()
             }
             Self::SwappedLimits { .. } => "exchange them".to_owned(),
+            Self::NoLimits { .. } => {
+                "write both as numbers: Limits; 0.2; 0.8, or give a dimension another name".to_owned()
+            }
             _ => return None,
         })
     }

@@ -71,7 +71,7 @@ impl LimitRows {
         Ok(true)
     }
 
-    /// Limits behind a word: `lower limit; 0,2`, `Grenzen; 0,2; 0,8`, `limits 0.2 .. 0.8`.
+    /// Limits behind a word: `lower limit; 0,2`, `Grenzen; 0,2; 0,8`, `Grenzen; 0,2 .. 0,8`, `limits 0.2 .. 0.8`.
     fn named(&mut self, line: u64, content: &[Content], figures: &mut Figures) -> Result<bool, ImportFault> {
         let mut any = false;
         for (place, cell) in content.iter().enumerate() {
@@ -84,6 +84,13 @@ impl LimitRows {
                 match cell {
                     Content::Empty => {}
                     cell if is_number(cell) => found.extend(figures.keep_content(&address(line, place), cell, 1.0)?),
+                    Content::Text(text) => {
+                        let (word, both) = word_and_numbers(text);
+                        if !word.is_empty() || both.len() != 2 {
+                            break;
+                        }
+                        found.extend(both.iter().map(|number| figures.keep(&address(line, place), number, 1.0)));
+                    }
                     _ => break,
                 }
             }

@@ -7,12 +7,12 @@ use crate::import::fault::{ImportFault, ImportProblem, NAMED};
 use crate::import::figures::Figures;
 use crate::import::header::{Header, header};
 use crate::import::limits::LimitRows;
-use crate::import::row::{Read, Row, is_dimension, row};
+use crate::import::row::{Read, Row, is_dimension, name, row};
 use crate::import::sheet::{Content, Sheet};
 use crate::import::spread::{Band, LimitReading, Spread, limit_reading, refuse_mixed_signs, same_limits, spread};
 use crate::import::study_text::{Part, Target, characteristics, dimensions, head, sum};
 use crate::import::title::TitleRows;
-use crate::import::words::is_total;
+use crate::import::words::{is_total, names_both_limits};
 use sensitol_numeric::names::first_of;
 
 /// Most equal parts of a row: more are a typing error.
@@ -21,6 +21,9 @@ const MOST_EQUAL: f64 = 1000.0;
 const SUM_ERROR: f64 = 1e-6;
 /// Difference of limits from the worst case of the rows, in parts of the worst case: rounding errors of a spreadsheet.
 const WORST_CASE_ERROR: f64 = 1e-6;
+
+/// Distributions that are not symmetric, so that a mirrored one is another one.
+const SKEWED: [&str; 4] = ["lognormal", "exponential", "rayleigh", "beta"];
 
 /// Choices of an import.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -87,7 +90,8 @@ pub fn import(sheet: &Sheet, options: &ImportOptions) -> Result<Imported, Import
         return Err(ImportFault { cell: None, problem: ImportProblem::NoEffect });
     }
     let has = |role: ColumnRole| table.header.column(role).is_some();
-    if !has(ColumnRole::Direction) && !has(ColumnRole::Factor) && parts.iter().all(|part| part.nominal >= 0.0) {
+    let is_added = |part: &Part| part.nominal >= 0.0 && part.factor >= 0.0;
+    if !has(ColumnRole::Direction) && !has(ColumnRole::Factor) && parts.iter().all(is_added) {
         table.notes.push("no column has a direction or a factor: all dimensions are added".to_owned());
     }
     let [lower, upper] = limits(&mut table, &values, &parts);
@@ -138,6 +142,14 @@ fn read(sheet: &Sheet, options: &ImportOptions) -> Result<Table, ImportFault> {
     for (line, content) in below {
         if !is_dimension(&header, content) && limits.read(&header, *line, content, &mut figures)? {
             continue;
+        }
+        if let Some(name) = name(&header, content).filter(|name| names_both_limits(name)) {
+            if limits.read_words(*line, content, &mut figures)? {
+                continue;
+            }
+            if is_dimension(&header, content) {
+                return Err(ImportFault::of(header.cell(ColumnRole::Name, *line), ImportProblem::NoLimits { name }));
+            }
         }
         match row(&header, *line, content, titles.unit.as_deref(), &mut figures)? {
             Read::Blank => {}
@@ -223,7 +235,7 @@ fn take_out_totals(table: &mut Table, values: &[f64]) -> Result<(), ImportFault>
 fn parts(table: &mut Table, values: &[f64], spreads: &[Spread]) -> Result<Vec<Part>, ImportFault> {
     // Every name with the number that is tried next, so that many equal names are numbered in one pass.
     let mut taken: HashMap<String, usize> = HashMap::new();
-    let (mut parts, mut numbered) = (Vec::new(), Vec::new());
+    let (mut parts, mut numbered, mut mirrored) = (Vec::new(), Vec::new(), Vec::new());
     for (row, spread) in table.rows.iter().zip(spreads) {
         let count = match row.quantity.map(|place| (values[place], place)) {
             None => 1,
@@ -242,11 +254,16 @@ fn parts(table: &mut Table, values: &[f64], spreads: &[Spread]) -> Result<Vec<Pa
             ("shift", row.shift.filter(|place| is_normal && values[*place] != 0.0)),
         ];
         let numbers = numbers.into_iter().filter_map(|(key, place)| Some((key, values[place?]))).collect();
+        let nominal = values[row.nominal];
+        let is_mirrored = sign_is_direction(&table.header, row, spread, values);
+        if is_mirrored {
+            mirrored.push(format!("`{}` of row {} is {}", row.name, row.line, -nominal));
+        }
         let part = Part {
             name: String::new(),
-            nominal: values[row.nominal],
+            nominal: if is_mirrored { -nominal } else { nominal },
             spread: spread.clone(),
-            factor: row.sign * row.factor.map_or(1.0, |place| values[place]),
+            factor: if is_mirrored { -1.0 } else { row.sign * row.factor.map_or(1.0, |place| values[place]) },
             unit: row.unit.clone(),
             distribution: row.distribution,
             numbers,
@@ -264,7 +281,32 @@ fn parts(table: &mut Table, values: &[f64], spreads: &[Spread]) -> Result<Vec<Pa
     if !numbered.is_empty() {
         table.notes.push(format!("equal names were numbered: {}", first_of(&numbered, NAMED)));
     }
+    if !mirrored.is_empty() {
+        let which = first_of(&mirrored, NAMED);
+        table
+            .notes
+            .push(format!("the sign of a negative nominal value is taken as its direction: {which}, subtracted"));
+    }
     Ok(parts)
+}
+
+/// True if the sign of a nominal value says the direction, so that the tolerance is that of the positive value. A tolerance on both sides is
+/// the same either way, and limits beside the nominal value have its sign.
+fn sign_is_direction(header: &Header, row: &Row, spread: &Spread, values: &[f64]) -> bool {
+    let nominal = values[row.nominal];
+    let has = |role: ColumnRole| header.column(role).is_some();
+    if nominal >= 0.0 || has(ColumnRole::Direction) || has(ColumnRole::Factor) {
+        return false;
+    }
+    let negative_limits = row.limits.is_some_and(|[_, low]| values[low] < 0.5 * nominal);
+    let is_even = match spread {
+        Spread::Deviations([low, high]) => *low == -high,
+        Spread::None | Spread::Percent(_) | Spread::Limits(_) => true,
+        Spread::Class(_) => false,
+    };
+    let is_shifted = row.shift.is_some_and(|shift| values[shift] != 0.0) && !matches!(spread, Spread::Limits(_));
+    let is_skewed = row.distribution.is_some_and(|kind| SKEWED.contains(&kind)) && !matches!(spread, Spread::Limits(_));
+    !negative_limits && (!is_even || is_shifted || is_skewed)
 }
 
 /// Takes a name with the first number that is free, or as it is.

@@ -82,11 +82,12 @@ const UPPER_LIMIT: [&str; 14] = [
     "hochstmass",
 ];
 /// Words before both limits of the characteristic.
-const LIMITS: [&str; 12] = [
+const LIMITS: [&str; 13] = [
     "limits",
     "limit",
     "grenzen",
     "grenzwerte",
+    "grenzmasse",
     "requirement",
     "requirements",
     "anforderung",
@@ -96,6 +97,8 @@ const LIMITS: [&str; 12] = [
     "specification",
     "spezifikation",
 ];
+/// Words that stand before limits only, so that a row with one of them as its name is no dimension.
+const NO_DIMENSION: [&str; 6] = ["limits", "limit", "grenzen", "grenzwerte", "grenzmasse", "sollbereich"];
 
 /// Sign of a direction in a cell. Returns None for another word.
 pub(super) fn direction(word: &str) -> Option<f64> {
@@ -117,6 +120,11 @@ pub(super) fn distribution(word: &str) -> Option<&'static str> {
 pub(super) fn is_total(name: &str) -> bool {
     let name = plain(name);
     TOTALS.contains(&name.trim_end_matches([' ', '=']))
+}
+
+/// True for a name that is never one of a dimension: its row holds both limits of the characteristic.
+pub(super) fn names_both_limits(name: &str) -> bool {
+    NO_DIMENSION.contains(&plain(name.trim_end_matches(['=', ' '])).as_str())
 }
 
 /// Limits that a word stands before: lower, upper or both. Returns None for another word.
