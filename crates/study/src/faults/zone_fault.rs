@@ -120,6 +120,18 @@ pub enum ZoneFault {
         /// The zone.
         zone: String,
     },
+    /// A datum target beyond the extents of its face.
+    #[error("target {target} of `{face}` lies at [{}, {}], outside of its size [{}, {}]", at[0], at[1], size[0], size[1])]
+    TargetOutside {
+        /// Number of the target, from 1.
+        target: usize,
+        /// Full name of the face.
+        face: String,
+        /// Place of the target from the middle of the face, along x and y.
+        at: [f64; 2],
+        /// Extents of the face along x and y.
+        size: [f64; 2],
+    },
     /// A cost of a zone that is not about the nominal place.
     #[error("`{zone}` has a cost, and its places are not about the nominal one")]
     CostOfUneven {
@@ -200,6 +212,13 @@ impl ZoneFault {
             Self::AxisMissing { .. } => "name the axis of the part: datums = \"journal\"".into(),
             Self::VaryingDirection { .. } => "write its directions as words or numbers".into(),
             Self::NoRefinement { .. } => "leave it out, or write a tighter zone".into(),
+            Self::TargetOutside { size: [x, y], .. } => {
+                format!(
+                    "places start at the middle of the face: write x within ±{} and y within ±{}",
+                    0.5 * x.abs(),
+                    0.5 * y.abs()
+                )
+            }
             Self::CostWithoutZone { feature } => {
                 format!("give `{feature}` a zone such as position = 0.1, or the cost to a dimension")
             }

@@ -147,8 +147,51 @@ fn wrong_targets_name_the_remedy() {
         assert_eq!(error.key, "parts.plate.A.targets", "{error}");
         assert!(error.to_string().contains("one to three places"), "{error}");
     }
+    // Sizes are about the middle of the face, so that 160 reaches to 80 at either side.
+    let sized = |size: &str| parse(&plate("check", &format!(", size = {size}"), ""));
+    assert!(sized("[280, 180]").is_ok());
+    let error = sized("[270, 180]").expect_err("size");
+    assert_eq!(error.key, "parts.plate.A.targets", "{error}");
+    let said = error.to_string();
+    assert!(said.contains("target 2 of `plate.A` lies at [140, -10], outside of its size [270, 180]"), "{said}");
+    assert!(error.line_column().is_some());
     // Targets in a line hold no plane.
     let text = plate("check", "", "").replace("[80, -90]", "[200, -10]");
     let error = parse(&text).expect_err("in a line");
     assert!(error.to_string().contains("joint `seat 3` takes 1, and only 0"), "{error}");
+}
+
+/// Names that are made here are not those of the study, and a misspelt face is the fault that is reported.
+#[test]
+fn names_of_targets_are_free_and_faces_with_targets_are_used() {
+    let text = plate("check", ", flatness = 0.06", "");
+    let with = |line: &str, after: &str| text.replacen(after, &format!("{after}{line}\n"), 1);
+    for (text, key, what) in [
+        (
+            with("\"A target 1\" = { point = [1, 2, 3] }", "[parts.plate]\n"),
+            "parts.plate.A target 1",
+            "the name `A target 1` is taken",
+        ),
+        (
+            with("\"seat 1\" = { on = \"fixture.fence\", against = \"plate.top\" }", "[joints]\n"),
+            "joints.seat 1",
+            "the name `seat 1` is taken",
+        ),
+        (with("\"plate.A.target1\" = { nominal = 1 }", "[dimensions]\n"), "dimensions.plate.A.target1", "is taken"),
+        (text.replacen("\"plate.A\"", "\"plate.a\"", 1), "joints.seat.against", "there is no feature `plate.a`"),
+        (
+            with("D = { plane = [0, 0, 12], normal = \"z\", targets = [[1, 2]] }", "[parts.plate]\n"),
+            "parts.plate.D.targets",
+            "no joint without `press` names",
+        ),
+    ] {
+        let error = parse(&text).expect_err(key);
+        assert_eq!(error.key, key, "{error}");
+        assert!(error.to_string().contains(what) && error.line_column().is_some(), "{error}");
+    }
+    let error = parse(&text.replacen("\"plate.A\"", "\"plate.a\"", 1)).expect_err("misspelt");
+    assert!(error.help().is_some_and(|text| text.contains("plate.A")), "{error:?}");
+    // An unknown key of a plane lists the targets too.
+    let error = parse(&text.replacen("normal = \"-z\"", "normal = \"-z\", target = [1, 2]", 1)).expect_err("key");
+    assert!(error.help().is_some_and(|text| text.contains("targets")), "{error:?}");
 }

@@ -13,6 +13,7 @@ use super::values::length_unit;
 use super::zones::frame::{ConstantFrame, number};
 use crate::error::{Fault, Faults, StudyFault, fault};
 use crate::expand::{Expanded, Origin, Tree, Value, quoted, wrong_type};
+use crate::faults::zone_fault::ZoneFault;
 use crate::tree::Key;
 
 /// Signs of the corners along x and y of the face, around it.
@@ -45,20 +46,64 @@ pub(in crate::expand) fn expand(expanded: &mut Expanded) -> Result<(), Faults> {
             }
             continue;
         }
-        for (side, other) in [("against", "on"), ("on", "against")] {
-            let Some(face) = face(&study, joint, side).filter(|face| face.tree.get("targets").is_some()) else {
-                continue;
-            };
+        let sides = [("against", "on"), ("on", "against")].map(|(side, other)| {
+            Some((face(&study, joint, side).filter(|face| face.tree.get("targets").is_some())?, other))
+        });
+        if let [Some(_), Some(_)] = sides {
+            let why = "are both faces with `targets`: a joint touches at the targets of one of them".to_owned();
+            let conflict = StudyFault::Conflict { a: "on", b: "against", why };
+            faults.0.push(fault(key.span.clone(), format!("joints.{}", key.name), conflict));
+        }
+        for (face, _) in sides.iter().flatten() {
             targeted.push((face.part.to_owned(), face.name.to_owned()));
+        }
+        if let Some((face, other)) = sides.into_iter().flatten().next() {
             faults.take(rest(expanded, &study, (key, joint), (&face, other)));
-            break;
         }
     }
-    for (part, name) in targeted {
-        let face = expanded.tree.get_mut("parts").and_then(|parts| parts.get_mut(&part)?.get_mut(&name)?.entries_mut());
-        face.into_iter().for_each(|keys| keys.retain(|(key, _)| key.name != "targets"));
-    }
+    faults.take(take_out_targets(expanded, &study, &targeted));
     faults.none()
+}
+
+/// Takes the targets out of all faces. A face whose targets no joint uses is a fault, unless a joint names a feature that does not exist:
+/// that is reported where the joint is read, as it is the cause.
+fn take_out_targets(expanded: &mut Expanded, study: &Tree, used: &[(String, String)]) -> Result<(), Fault> {
+    let is_misspelt = study.get("joints").map_or(&[][..], Tree::entries).iter().any(|(_, joint)| {
+        ["on", "against"].iter().any(|side| joint.get(side).is_some_and(|name| !is_feature(study, name)))
+    });
+    for (part, features) in study.get("parts").map_or(&[][..], Tree::entries) {
+        let pointed = features.entries().iter().filter(|(_, face)| face.get("plane").is_some());
+        for (key, targets) in pointed.filter_map(|(key, face)| Some((key, face.get("targets")?))) {
+            let is_used = used.iter().any(|(of, name)| *of == part.name && *name == key.name);
+            if !is_used && !is_misspelt {
+                let to = "a face that no joint without `press` names in `on` or `against`".to_owned();
+                let instead = "name the face in such a joint, or leave `targets` out";
+                let unused = StudyFault::DoesNotApply { key: "targets", to, instead };
+                return Err(fault(targets.span.clone(), format!("parts.{}.{}.targets", part.name, key.name), unused));
+            }
+            let parts = expanded.tree.get_mut("parts");
+            let face = parts.and_then(|parts| parts.get_mut(&part.name)?.get_mut(&key.name)?.entries_mut());
+            face.into_iter().for_each(|keys| keys.retain(|(key, _)| key.name != "targets"));
+        }
+    }
+    Ok(())
+}
+
+/// True for the full name of a feature of the study. Other values than texts are reported where the joint is read.
+fn is_feature(study: &Tree, name: &Tree) -> bool {
+    let Value::Text(name) = &name.value else { return true };
+    let Some((part, name)) = name.split_once('.') else { return false };
+    study.get("parts").and_then(|parts| parts.get(part)?.get(name)).is_some()
+}
+
+/// Refuses a name of the study that is one of those made here.
+fn refuse_taken(study: &Tree, path: &[&str], name: &str, by: &'static str) -> Result<(), Fault> {
+    let section = path.iter().try_fold(study, |tree, key| tree.get(key));
+    let taken = section.and_then(|section| section.entries().iter().find(|(key, _)| key.name == name));
+    taken.map_or(Ok(()), |(key, _)| {
+        let taken = StudyFault::NameTaken { name: name.to_owned(), by };
+        Err(fault(key.span.clone(), format!("{}.{name}", path.join(".")), taken))
+    })
 }
 
 /// Plane that a key of a joint names. Returns None for other features.
@@ -112,6 +157,9 @@ fn rest(
         return Err(fault(takes.span.clone(), format!("joints.{}.takes", key.name), conflict));
     }
     let names = face.points(expanded, study, "target", &targets)?;
+    for index in 1..=names.len() {
+        refuse_taken(study, &["joints"], &format!("{} {index}", key.name), "the joint at a datum target")?;
+    }
     let of_target = |(index, name): (usize, String)| {
         let mut keys: Vec<(Key, Tree)> = (joint.entries().iter())
             .filter(|(key, _)| !["on", "against", "takes"].contains(&key.name.as_str()))
@@ -170,7 +218,18 @@ impl PointedFace<'_> {
             Value::Array(items) if (1..=3).contains(&items.len()) => items.iter().map(pair).collect::<Option<_>>(),
             _ => None,
         };
-        places.ok_or_else(|| wrong_type(given, format!("{}.targets", self.path()), expected))
+        let places: Vec<[f64; 2]> =
+            places.ok_or_else(|| wrong_type(given, format!("{}.targets", self.path()), expected))?;
+        // The origin of the frame is the middle of the face. A size in words of dimensions is not compared.
+        let Some(size) = self.tree.get("size").and_then(pair) else { return Ok(places) };
+        let is_outside =
+            |place: &[f64; 2]| (0..2).any(|axis| place[axis].abs() > 0.5 * size[axis].abs() * (1.0 + ROUNDING));
+        if let Some(index) = places.iter().position(is_outside) {
+            let face = format!("{}.{}", self.part, self.name);
+            let outside = ZoneFault::TargetOutside { target: index + 1, face, at: places[index], size };
+            return Err(fault(given.span.clone(), format!("{}.targets", self.path()), outside));
+        }
+        Ok(places)
     }
 
     /// Adds points of the face at these places, and their deviations if the face has form. Returns the names of the points.
@@ -189,6 +248,12 @@ impl PointedFace<'_> {
             let name = format!("{} {what} {}", self.name, index + 1);
             let deviation = format!("{}.{}.{what}{}", self.part, self.name, index + 1);
             names.push(format!("{}.{name}", self.part));
+            refuse_taken(study, &["parts", self.part], &name, "a point of a face that touches")?;
+            if form.is_some() {
+                for section in ["dimensions", "constants", "formulas"] {
+                    refuse_taken(study, &[section], &deviation, "the form of a face at a point")?;
+                }
+            }
             // A face may touch in several joints.
             if expanded.tree.get("parts").and_then(|parts| parts.get(self.part)?.get(&name)).is_some() {
                 continue;

@@ -89,12 +89,12 @@ fn feature(key: &Key, tree: &Tree, path: &str, values: &mut Values<'_>) -> Resul
         }
     };
     let valid: &[&str] = match kind {
-        FeatureKind::Plane => &["plane", "normal", "x", "shift", "tilt"],
+        FeatureKind::Plane => &["plane", "normal", "x", "shift", "tilt", "targets"],
         FeatureKind::Axis => &["axis", "along", "x", "diameter", "shift", "tilt"],
         FeatureKind::Point => &["point", "diameter", "shift"],
         FeatureKind::Frame => &["frame", "z", "x", "shift", "tilt"],
     };
-    // Zones are replaced before the feature is read: their keys stand here for suggestions.
+    // Zones and targets are replaced before the feature is read: their keys stand here for suggestions.
     let valid: Vec<&str> = valid.iter().copied().chain(super::zones::keys(kind)).collect();
     unknown_key(tree, path, &valid)?;
     let at = |name: &str| format!("{path}.{name}");
