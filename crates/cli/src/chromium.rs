@@ -1,17 +1,18 @@
 //! Prints a page by an installed Chromium.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::failure::Failure;
+use crate::interrupt;
 use sensitol_report::html::{Paper, on_paper};
 
 /// Variable that names the browser.
 const VARIABLE: &str = "SENSITOL_CHROMIUM";
 /// Names of the browser on PATH, the first that is found is taken.
 const NAMES: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
-/// Longest time of a print. A page takes about two seconds, and a loaded machine ten times as long.
+/// Longest time of a print, with and without a sandbox together. A page takes about two seconds, and a loaded machine ten times as long.
 const LIMIT: Duration = Duration::from_secs(60);
 /// Time between two looks at the browser.
 const LOOK: Duration = Duration::from_millis(20);
@@ -41,8 +42,12 @@ pub(crate) fn printed(browser: &Path, page: &str) -> Result<Vec<u8>, Failure> {
     std::fs::write(&source, on_paper(page, paper())).map_err(unusable)?;
     // A browser of root, or in a container, starts without its sandbox only. The page loads nothing and runs its own scripts.
     let mut reason = String::new();
+    let wait = PrintWait { begun: Instant::now(), was_stopped: interrupt::stopped() };
     for flags in [&[][..], &["--no-sandbox"]] {
-        reason = match print(browser, flags, [folder.path(), &source, &target]) {
+        if wait.over().is_some() {
+            break;
+        }
+        reason = match print(browser, flags, &wait, [folder.path(), &source, &target]) {
             Ok(()) => match std::fs::read(&target) {
                 Ok(pdf) if pdf.starts_with(b"%PDF") => return Ok([&pdf, MARK].concat()),
                 _ => "it wrote no PDF".to_owned(),
@@ -53,10 +58,32 @@ pub(crate) fn printed(browser: &Path, page: &str) -> Result<Vec<u8>, Failure> {
     Err(failed(reason))
 }
 
+/// Wait for a print.
+struct PrintWait {
+    /// Start of the first browser.
+    begun: Instant,
+    /// True if Ctrl-C ended the analysis before. Its report is printed then.
+    was_stopped: bool,
+}
+
+impl PrintWait {
+    /// Reason to end the browser. Ctrl-C does not reach it in its own group.
+    fn over(&self) -> Option<String> {
+        if interrupt::stopped() && !self.was_stopped {
+            return Some("it was interrupted".to_owned());
+        }
+        (self.begun.elapsed() >= LIMIT).then(|| format!("it printed nothing within {} s", LIMIT.as_secs()))
+    }
+}
+
 /// Runs the browser on a page, with its profile in a folder of its own.
-fn print(browser: &Path, flags: &[&str], [folder, source, target]: [&Path; 3]) -> Result<(), String> {
+fn print(browser: &Path, flags: &[&str], wait: &PrintWait, [folder, source, target]: [&Path; 3]) -> Result<(), String> {
     let of = |name: &str, path: &Path| format!("--{name}={}", path.display());
-    let mut child = Command::new(browser)
+    let mut command = Command::new(browser);
+    // A browser is several processes, which end together as one group.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    let mut child = command
         .args(["--headless", "--disable-gpu", "--no-first-run", "--disable-background-networking"])
         .args(["--no-pdf-header-footer", &of("user-data-dir", &folder.join("profile")), &of("print-to-pdf", target)])
         .args(flags)
@@ -66,20 +93,30 @@ fn print(browser: &Path, flags: &[&str], [folder, source, target]: [&Path; 3]) -
         .stderr(Stdio::null())
         .spawn()
         .map_err(|error| error.to_string())?;
-    let begun = Instant::now();
     loop {
-        match child.try_wait() {
-            Ok(Some(status)) if status.success() => return Ok(()),
-            Ok(Some(status)) => return Err(format!("it ended with {status}")),
-            Ok(None) if begun.elapsed() < LIMIT => std::thread::sleep(LOOK),
-            Ok(None) => {
-                let _ = child.kill();
-                let _ = child.wait();
-                return Err(format!("it printed nothing within {} s", LIMIT.as_secs()));
+        match (child.try_wait(), wait.over()) {
+            (Ok(Some(status)), _) if status.success() => return Ok(()),
+            (Ok(Some(status)), _) => return Err(format!("it ended with {status}")),
+            (Ok(None), None) => std::thread::sleep(LOOK),
+            (Ok(None), Some(reason)) => {
+                end(&mut child);
+                return Err(reason);
             }
-            Err(error) => return Err(error.to_string()),
+            (Err(error), _) => return Err(error.to_string()),
         }
     }
+}
+
+/// Ends a browser with its group. The number of the group belongs to it until the browser itself is waited for.
+fn end(child: &mut Child) {
+    #[cfg(unix)]
+    {
+        let mut command = Command::new("/bin/sh");
+        command.args(["-c", "kill -s KILL -- \"-$1\"", "sensitol-end", &child.id().to_string()]);
+        let _ = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    }
+    let _ = child.kill();
+    let _ = child.wait();
 }
 
 /// Paper of the user's locale.
@@ -104,5 +141,25 @@ mod tests {
         let papers = ["en_US.UTF-8", "es_MX", "de_DE.UTF-8", "C.UTF-8", "", "en_GB@euro"].map(paper_of);
         use Paper::{A4, Letter};
         assert_eq!(papers, [Letter, Letter, A4, A4, A4, A4]);
+    }
+
+    /// A process that the browser started ends with it.
+    #[cfg(unix)]
+    #[test]
+    fn the_whole_group_of_a_browser_ends() {
+        use std::io::{BufRead, BufReader, Read};
+        let mut command = Command::new("/bin/sh");
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        command.args(["-c", "sleep 600 & echo started; wait"]).stdout(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let mut output = BufReader::new(child.stdout.take().unwrap());
+        let mut line = String::new();
+        output.read_line(&mut line).unwrap();
+        assert_eq!(line, "started\n");
+        let begun = Instant::now();
+        end(&mut child);
+        // The pipe ends once no process of the group holds it.
+        output.read_to_string(&mut line).unwrap();
+        assert!(begun.elapsed() < LIMIT, "{:?}", begun.elapsed());
     }
 }
