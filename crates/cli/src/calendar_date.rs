@@ -1,17 +1,29 @@
 //! Date of a report in the calendar, UTC.
 
+use std::ffi::OsStr;
 use std::time::{SystemTime, UNIX_EPOCH};
+
+use crate::failure::Failure;
 
 /// Seconds of a day.
 const DAY: u64 = 86_400;
 /// Variable with the time of a reproducible build, in seconds (reproducible-builds.org).
 const VARIABLE: &str = "SOURCE_DATE_EPOCH";
 
-/// Returns the date of today, or of the variable SOURCE_DATE_EPOCH if it is set.
-pub(crate) fn today() -> Option<String> {
-    let set = std::env::var(VARIABLE).ok().and_then(|seconds| seconds.trim().parse().ok());
-    let seconds = set.or_else(|| Some(SystemTime::now().duration_since(UNIX_EPOCH).ok()?.as_secs()))?;
-    Some(date(seconds / DAY))
+/// Returns the date of today, or of the variable SOURCE_DATE_EPOCH if it is set. Returns None if the clock is wrong.
+pub(crate) fn today() -> Result<Option<String>, Failure> {
+    let set = std::env::var_os(VARIABLE).filter(|text| !text.is_empty());
+    let seconds = match set {
+        Some(text) => Some(seconds(&text)?),
+        None => SystemTime::now().duration_since(UNIX_EPOCH).ok().map(|since| since.as_secs()),
+    };
+    Ok(seconds.map(|seconds| date(seconds / DAY)))
+}
+
+/// Returns the seconds since 1970 that the variable holds.
+fn seconds(text: &OsStr) -> Result<u64, Failure> {
+    let whole = text.to_str().and_then(|text| text.trim().parse().ok());
+    whole.ok_or_else(|| Failure::WrongDate { variable: VARIABLE, text: text.to_string_lossy().into_owned() })
 }
 
 /// Returns the date of a day since 1970-01-01 in the Gregorian calendar.
@@ -41,5 +53,15 @@ mod tests {
         let days = [0, 59, 11_016, 11_017, 20_785, 47_540];
         let dates = days.map(date);
         assert_eq!(dates, ["1970-01-01", "1970-03-01", "2000-02-29", "2000-03-01", "2026-11-28", "2100-02-28"]);
+    }
+
+    #[test]
+    fn a_time_that_is_no_whole_number_of_seconds_is_an_error() {
+        for text in ["abc", "-5", "1700000000.5", "1e9", " ", "0x10"] {
+            let said = seconds(OsStr::new(text)).unwrap_err().to_string();
+            assert!(said.contains("SOURCE_DATE_EPOCH") && said.contains(&format!("`{text}`")), "{said}");
+        }
+        // `date -u -d @1795867200 +%F` (GNU coreutils).
+        assert_eq!(date(seconds(OsStr::new("1795867200\n")).unwrap() / DAY), "2026-11-28");
     }
 }

@@ -152,6 +152,10 @@ pub(super) enum Failure {
     NoBrowser { named: Option<PathBuf> },
     #[error("{browser} did not print the page: {reason}; write the page by --html and print it from a browser", browser = browser.display())]
     NotPrinted { browser: PathBuf, reason: String },
+    #[error(
+        "the variable {variable} is `{text}`: write the whole number of seconds since 1970, such as 1700000000, or unset it"
+    )]
+    WrongDate { variable: &'static str, text: String },
     #[error("the page of the workbench is older than this program: run web/build again")]
     OldPage,
     #[error("{path} is no folder of studies: {reason}", path = path.display())]

@@ -124,6 +124,7 @@ impl Failure {
             Self::NoPage { .. } => "no-page",
             Self::NoBrowser { .. } => "no-browser",
             Self::NotPrinted { .. } => "not-printed",
+            Self::WrongDate { .. } => "wrong-date",
             Self::WrongPage { .. } | Self::OldPage => "wrong-page",
             Self::NotInPage { .. } => "not-in-page",
             Self::NotAFolder { .. } => "not-a-folder",

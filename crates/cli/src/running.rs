@@ -22,15 +22,18 @@ use sensitol_study::{Externals, JournalPlace, Study};
 pub(super) struct Clock {
     begun: Instant,
     limit: Option<Duration>,
+    /// Date of the report.
+    date: Option<String>,
 }
 
 impl Clock {
-    /// Starts the clock with a limit in seconds, and installs the handler of Ctrl-C.
-    pub(super) fn start(seconds: Option<f64>) -> Self {
+    /// Starts the clock with a limit in seconds, and installs the handler of Ctrl-C. Fails if the date that is asked for is none.
+    pub(super) fn start(seconds: Option<f64>) -> Result<Self, Failure> {
+        let date = today()?;
         interrupt::listen();
         start_threads();
         let limit = seconds.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
-        Self { begun: Instant::now(), limit }
+        Ok(Self { begun: Instant::now(), limit, date })
     }
 
     /// True if there is a time limit.
@@ -58,16 +61,10 @@ impl Clock {
             title: study.title.clone(),
             sha256: study.sha256.clone(),
             warnings: study.warnings.clone(),
-            block: dated(study.about.clone()),
+            block: study.about.iter().cloned().chain(self.date.clone().map(|date| ("Date", date))).collect(),
             scene: study.scene(),
         }
     }
-}
-
-/// Adds the date to the cells of a title block.
-fn dated(mut block: Vec<(&'static str, String)>) -> Vec<(&'static str, String)> {
-    block.extend(today().map(|date| ("Date", date)));
-    block
 }
 
 /// Returns the settings of external models: journal, listener, and given answers.

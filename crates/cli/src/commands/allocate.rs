@@ -31,7 +31,7 @@ pub(crate) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let page = PageFiles::open(&mut files, asked.html.as_deref(), asked.pdf.as_deref())?;
     asked.write.as_deref().map_or(Ok(()), |path| stays_beside(path, &asked.study.study, &study))?;
     let written = files.file_of(asked.write.as_deref(), &Content::Study)?;
-    let clock = Clock::start(asked.work.time);
+    let clock = Clock::start(asked.work.time)?;
     let mut options = AllocationOptions::default();
     options.analysis = study.options.clone();
     options.recentre = asked.recentre.iter().map(|one| one.name.clone()).collect();

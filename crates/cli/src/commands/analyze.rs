@@ -136,7 +136,7 @@ pub(crate) fn analyzed(
     look: Look,
     show: impl FnOnce(&Report) -> Result<(), Failure>,
 ) -> Result<Exit, Failure> {
-    let clock = Clock::start(asked.work.time);
+    let clock = Clock::start(asked.work.time)?;
     let analysis = analyze(study, asked.threads, &clock, look)?;
     let about = clock.about(study);
     let mut report = Report::keeping(&study.problem, analysis, about);

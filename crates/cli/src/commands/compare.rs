@@ -29,7 +29,7 @@ pub(crate) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     options.budget = asked.budget.or(study.options.budget);
     options.reference = asked.samples;
     options.seed = asked.of.seed.or(study.seed).unwrap_or(Options::SEED);
-    let clock = Clock::start(asked.of.work.time);
+    let clock = Clock::start(asked.of.work.time)?;
     let stop = || clock.stop();
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
     let comparison = on_threads(asked.of.threads, || compare_with(&study.problem, &options, &run));

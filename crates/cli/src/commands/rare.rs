@@ -32,7 +32,7 @@ pub(crate) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     options.seed = asked.of.seed.or(study.seed).unwrap_or(Options::SEED);
     options.until = asked.until;
     options.surrogate = surrogate(study, asked);
-    let clock = Clock::start(asked.of.work.time);
+    let clock = Clock::start(asked.of.work.time)?;
     let threads = asked.of.threads;
     let found = sampling(threads, &clock, look, |run, pace| rare_with(&study.problem, &options, run, pace));
     kept(&study.problem)?;

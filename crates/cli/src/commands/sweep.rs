@@ -27,7 +27,7 @@ pub(crate) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let table = files.folder(asked.csv.as_deref(), &names)?;
     let chart = files.file(asked.svg.as_deref())?;
     let page = PageFiles::open(&mut files, asked.html.as_deref(), asked.pdf.as_deref())?;
-    let clock = Clock::start(asked.work.time);
+    let clock = Clock::start(asked.work.time)?;
     let sweep = swept(&study, asked, &clock, look)?;
     let report = SweepReport::of(&study.problem, &sweep, clock.about(&study));
     let document = report.document();

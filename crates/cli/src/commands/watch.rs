@@ -122,7 +122,7 @@ impl Watched<'_> {
                 self.files.push(FileState::of(path));
             }
         }
-        let clock = Clock::start(self.asked.work.time);
+        let clock = Clock::start(self.asked.work.time)?;
         let analysis = analyze(&study, self.asked.threads, &clock, self.look)?;
         Ok(Report::keeping(&study.problem, analysis, clock.about(&study)))
     }

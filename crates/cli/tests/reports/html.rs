@@ -593,6 +593,22 @@ fn a_page_without_title_names_the_file() {
     );
 }
 
+/// The variable with the date of a reproducible page is not replaced by today, and the run ends before its analysis.
+#[test]
+fn a_date_that_is_none_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("page.html");
+    let study = repository("examples/shaft-and-bore/study.toml");
+    for date in ["abc", "-5", "1700000000.5"] {
+        let call = ["analyze", study.to_str().unwrap(), "--html", page.to_str().unwrap()];
+        let output = sensitol(&call).env("SOURCE_DATE_EPOCH", date).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(&format!("the variable SOURCE_DATE_EPOCH is `{date}`")), "{said}");
+        assert!(!page.exists() && output.stdout.is_empty());
+    }
+}
+
 /// Returns the cells of every row of the contributions, without markup.
 fn drivers(page: &str) -> Vec<Vec<String>> {
     let table = page.split("<table class=\"drivers\">").nth(1).unwrap().split("</table>").next().unwrap();

@@ -38,7 +38,7 @@ pub(crate) fn run(asked: &CompareLotArgs, look: Look) -> Result<Exit, Failure> {
     let mut options = LotOptions::default();
     options.level = asked.level.unwrap_or(options.level);
     options.assumed_parts = asked.assumed_parts.map_or(options.assumed_parts, |parts| parts as f64);
-    let clock = Clock::start(asked.work.time);
+    let clock = Clock::start(asked.work.time)?;
     let stop = || clock.stop();
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
     let compared = on_threads(asked.threads, || compare_lot(&study.problem, &tables, &options, &study.options, &run));

@@ -45,7 +45,7 @@ pub(crate) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref()).forced(asked.report.output.force);
     let reported = Reported::open(&mut files, &asked.report, asked.sobol)?;
     let options = options(asked, &study);
-    let clock = Clock::start(asked.of.work.time);
+    let clock = Clock::start(asked.of.work.time)?;
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look);
     kept(&study.problem)?;
     report(&study, &simulation?, reported, &clock, look)

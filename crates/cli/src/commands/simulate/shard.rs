@@ -37,7 +37,7 @@ pub(crate) fn run(asked: &SimulateArgs, shard: Shard, look: Look) -> Result<Exit
         Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref()).forced(asked.report.output.force);
     let destination = files.output_of(&asked.report.output, &Content::Points { header: FIRST_LINE })?;
     let options = options(asked, &study);
-    let clock = Clock::start(asked.of.work.time);
+    let clock = Clock::start(asked.of.work.time)?;
     let sums = sampling(asked.of.threads, &clock, look, |run, pace| {
         simulate_shard(&study.problem, &options, shard, run, pace)
     })?;
@@ -85,7 +85,7 @@ pub(crate) fn merge(asked: &MergeArgs, look: Look) -> Result<Exit, Failure> {
     let reported = Reported::open(&mut files, &asked.report, false)?;
     let mut options = SimulationOptions::default();
     options.target_joint_yield = study.options.target_joint_yield;
-    let clock = Clock::start(asked.of.work.time);
+    let clock = Clock::start(asked.of.work.time)?;
     let merged = sampling(asked.of.threads, &clock, look, |run, _| merge_shards(&study.problem, &options, &sums, run))?;
     report(&study, &merged?, reported, &clock, look)
 }
