@@ -27,7 +27,7 @@ pub fn history(problem: &Problem, non_repeatable: &[NonRepeatable]) -> Vec<Warni
             false => Warning::NotRepeatable { output, expected, found, times, points, suspects },
         }
     };
-    (0..non_repeatable.len()).filter(first).map(warning).chain(processes(problem)).collect()
+    (0..non_repeatable.len()).filter(first).map(warning).chain(processes(problem, !non_repeatable.is_empty())).collect()
 }
 
 /// Text of a point: the dimensions that are not at their nominal value.
@@ -36,8 +36,9 @@ fn words(problem: &Problem, point: &[f64]) -> String {
     moved.map(|(dimension, x)| format!("{} = {x}", dimension.name())).collect::<Vec<_>>().join(", ")
 }
 
-/// Warnings about processes: lost and repeated evaluations, unconfirmed answers, and a journal of another model.
-fn processes(problem: &Problem) -> Vec<Warning> {
+/// Warnings about processes: lost and repeated evaluations, unconfirmed answers, and a journal of another model. `changed` is true if an
+/// answer is not repeatable.
+fn processes(problem: &Problem, changed: bool) -> Vec<Warning> {
     let Some(account) = problem.function().account() else { return Vec::new() };
     let mut warnings = Vec::new();
     if account.has_failures() {
@@ -60,7 +61,7 @@ fn processes(problem: &Problem) -> Vec<Warning> {
         warnings.push(Warning::DamagedJournal { file: file.display().to_string(), answers });
     }
     if account.counts.unconfirmed > 0 {
-        warnings.push(Warning::Unconfirmed { answers: account.counts.unconfirmed });
+        warnings.push(Warning::Unconfirmed { answers: account.counts.unconfirmed, changed });
     }
     warnings
 }

@@ -104,6 +104,8 @@ pub enum Advice {
     KeepDefined,
     /// Reset the external model before every point.
     ResetModel,
+    /// Run again with the journal, which has the answers so far.
+    RunAgain,
     /// Let the model return a signed measure.
     SignedMeasure,
     /// Measure from a nearer datum.
@@ -169,7 +171,9 @@ impl fmt::Display for Advice {
             Self::SmallerStep { dimension: None } => "Use a smaller step.",
             Self::UseDifferences => "Take derivatives from differences.",
             Self::IncludeFixedDimensions => "Ask for the sensitivities of all dimensions.",
-            Self::LeaveOutCorrelation => "Leave `[[correlation]]` out to see the interval.",
+            Self::LeaveOutCorrelation => {
+                "Leave `[[correlation]]` or `[[joint]]` out, or write `joint = false`, to see the interval."
+            }
             Self::UseFormula => "Replace the model by a formula.",
             Self::CheckNames => "Look for a wrong name in the formulas, or leave the unused ones out.",
             Self::CheckUnits => {
@@ -190,6 +194,7 @@ impl fmt::Display for Advice {
             Self::NameModelFiles => "Name every file that the answers depend on in `files` of `[model]`.",
             Self::KeepDefined => "Keep the model defined around the means.",
             Self::ResetModel => "Reset the model before every point.",
+            Self::RunAgain => "Run it again: it continues with the answers in the journal.",
             Self::SignedMeasure => "Let the model return a signed measure.",
             Self::NearerDatum => "Measure the characteristic from a nearer datum.",
             Self::LargerUnit => "Choose a larger unit, so that the values are smaller.",

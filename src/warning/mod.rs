@@ -22,9 +22,8 @@ mod terms;
 mod text;
 
 use crate::summary::StopReason;
-pub use advice::Advice;
-pub use aggregate::aggregated;
 pub use terms::{Change, ContactShare, Counted, Ended, Figure, Loss, NameKind};
+pub use {advice::Advice, aggregate::aggregated};
 
 warnings! {
     /// None of the analysed characteristics can depend on these dimensions.
@@ -294,6 +293,8 @@ warnings! {
     Unconfirmed = "unconfirmed" by model::unconfirmed {
         /// The number of unconfirmed answers.
         answers: u64,
+        /// True if an answer changed after other points, false if the run only ended before the check.
+        changed: bool,
     };
     /// Checksums of answers in the journal do not agree.
     DamagedJournal = "damaged-journal" by model::damaged_journal {

@@ -130,13 +130,13 @@ pub(super) fn restarts(
     .advise(Advice::ReadModelLog)
 }
 
-pub(super) fn unconfirmed(answers: &u64) -> Text {
+pub(super) fn unconfirmed(answers: &u64, changed: &bool) -> Text {
     let (answers, them) = if *answers == 1 { ("1 answer", "it") } else { (&*format!("{answers} answers"), "them") };
-    say(format!(
-        "No fresh process confirmed {answers}: the model gives other values after other points, or the run ended before that check. Results \
-         that use {them} may be wrong."
-    ))
-    .advise(Advice::ResetModel)
+    let (why, advice) = match changed {
+        true => ("the model gives other values after other points", Advice::ResetModel),
+        false => ("the run ended before that check", Advice::RunAgain),
+    };
+    say(format!("No fresh process confirmed {answers}: {why}. Results that use {them} may be wrong.")).advise(advice)
 }
 
 pub(super) fn outdated_journal(output: &str, expected: &Option<f64>, found: &Option<f64>, answers: &usize) -> Text {

@@ -178,11 +178,11 @@ pub(super) fn under_resolved(
         ),
         None => format!("The error of the {name} of `{characteristic}` is unknown, and {wanted} was wanted."),
     };
-    let why = match budget {
-        true => "The budget was spent before.",
-        false => "Further derivatives would not reduce it.",
-    };
-    say(format!("{known} {why}")).advise(Advice::RaiseBudget).advise(Advice::Sample { points: None })
+    let sample = Advice::Sample { points: None };
+    match budget {
+        true => say(format!("{known} The budget was spent before.")).advise(Advice::RaiseBudget).advise(sample),
+        false => say(format!("{known} Further derivatives would not reduce it.")).advise(sample),
+    }
 }
 
 pub(super) fn switch(
