@@ -493,6 +493,8 @@ class CharacteristicResult(Fitted):
     """Description in a few words."""
     distribution: Optional[Law]
     """Distribution of the Pearson system with these moments, or the reason why there is none."""
+    distribution_free_yield: Optional[DistributionFreeYield]
+    """Yield over all distributions of dimensions of which only the band is promised. None if there is none."""
     drawing: Optional[str]
     """Number of the drawing."""
     error_estimate: Optional[ErrorEstimate]
@@ -594,6 +596,8 @@ class CharacteristicResult(Fitted):
     """Standard errors of the moments from sampling the surrogate of correlated inputs. None if the moments are
     exact.
     """
+    tail_sampling: Optional[SampledTail]
+    """Points of the model from which the yield follows, in tails at whose limits check points refute the surface."""
     target_yield: Optional[float]
     """Share of assemblies that must keep the limits."""
     unfinished: bool
@@ -798,6 +802,27 @@ class DimensionResult(Record):
     """Unit of the dimension."""
     zone: Optional[str]
     """The circular zone of which it is a coordinate."""
+
+
+class DistributionFreeYield(Record):
+    """Least and greatest yield, whatever the distribution of some dimensions within their bands. Figures beside it,
+    such as sigma and the quantiles, are those of uniform distributions in their place.
+    """
+
+    dimensions: List[str]
+    """Names of the dimensions that may have any distribution."""
+    interval: Optional[List[float]]
+    """Least and greatest yield. None if they are unknown: bounds need a linear formula, or a cheap model with one
+    such dimension.
+    """
+    proven: bool
+    """True if the interval is proven, as for linear formulas. False if it comes from points of the model, or is
+    unknown.
+    """
+    worst: Optional[List[List[float]]]
+    """Values and shares of a distribution with the least yield. None if several dimensions may have any
+    distribution.
+    """
 
 
 class Empirical(Record):
@@ -1507,6 +1532,21 @@ class SampledModel(Record):
     """95 % interval of `yield`."""
 
 
+class SampledTail(Record):
+    """Yield by importance samples of the model."""
+
+    beyond: List[Optional[float]]
+    """Shares below the lower and above the upper limit. None if that limit does not exist."""
+    failed: int
+    """Number of those at which the model has no value."""
+    points: int
+    """Number of points of the model, those that found places included."""
+    yield_: float
+    """Yield by these points."""
+    yield_interval: List[float]
+    """95 % interval of the yield, with what no point may have met."""
+
+
 class SamplingInterval(Record):
     """Intervals that contain the true results with a probability of `level`, as far as the size of the measured
     samples determines them. Mean, sigma, skewness, kurtosis and Cpk: by the bias-corrected and accelerated
@@ -2051,7 +2091,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "AllocationResultRequirements": {"sampled": AllocationResultRequirementsSampled},
     "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": Verified, "warnings": ReportedWarning},
     "Beyond": {"design_point": DesignPoint, "unmet": Unmet},
-    "CharacteristicResult": {"basis": FigureBases, "coefficient_of_variation": Verified, "conditional_yield": ConditionalYield, "coverage": CoverageIntervals, "distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "quantiles": QuantileEstimates, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
+    "CharacteristicResult": {"basis": FigureBases, "coefficient_of_variation": Verified, "conditional_yield": ConditionalYield, "coverage": CoverageIntervals, "distribution": Law, "distribution_free_yield": DistributionFreeYield, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "quantiles": QuantileEstimates, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "tail_sampling": SampledTail, "verification": Verification, "worst_case": WorstCase},
     "ComparedCharacteristic": {"methods": ComparedMethod, "reference": SimulatedCharacteristic},
     "ComparedMethod": {"error_vs_reference": ErrorVsReference, "run": RunSummary},
     "ComparisonResult": {"characteristics": ComparedCharacteristic, "evaluator": EvaluatorSummary, "not_run": NotRun},
