@@ -15,7 +15,7 @@ test("tolerances as engineers write them", () => {
   const n = (number) => ({ number });
   const cases = {
     "0.05": { tolerance: n("0.05") }, "± 0,05": { tolerance: n("0.05") }, "+-0.05": { tolerance: n("0.05") }, "-0.12 / 0": { tolerance: [n("-0.12"), n("0")] },
-    "+0.08 -0.05": { tolerance: [n("-0.05"), n("+0.08")] }, "0 / −0,12": { tolerance: [n("-0.12"), n("0")] }, H7: { fit: "H7" }, js6: { fit: "js6" }, "2 %": { tolerance: "2 %" },
+    "+0.08 -0.05": { tolerance: [n("-0.05"), n("+0.08")] }, "0 / −0,12": { tolerance: [n("-0.12"), n("0")] }, H7: { fit: "H7" }, js6: { fit: "js6" }, s6: { fit: "s6" }, "s 0.02": { sigma: n("0.02") }, "2 %": { tolerance: "2 %" },
     "9.9 .. 10.1": { limits: [n("9.9"), n("10.1")] }, "sigma 0.02": { sigma: n("0.02") }, "": {}, "much": { tolerance: "much" },
   };
   for (const [text, expected] of Object.entries(cases)) assert.deepEqual(study.tolerance(text), expected, text);

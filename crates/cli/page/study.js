@@ -67,6 +67,8 @@ const study = (() => {
     const plain = text.trim().replaceAll("−", "-").replace(/^(±|\+-|\+\/-)\s*/, "");
     if (plain === "") return {};
     if (isNumber(plain)) return { tolerance: numeric(number(plain)) };
+    // A class comes first: s6 is a fit, not a sigma of 6.
+    if (/^[A-Za-z]{1,2}\d{1,2}$/.test(plain)) return { fit: plain };
     const sigma = /^(?:sigma|σ|s)\s*=?\s*(.+)$/i.exec(plain);
     if (sigma && isNumber(sigma[1])) return { sigma: numeric(number(sigma[1])) };
     const limits = plain.split(/\s*(?:\.\.|…)\s*/);
@@ -76,7 +78,6 @@ const study = (() => {
     if (ends.length === 2 && ends.every(isNumber)) {
       return { tolerance: ends.map(number).sort((a, b) => Number(a) - Number(b)).map(numeric) };
     }
-    if (/^[A-Za-z]{1,2}\d{1,2}$/.test(plain)) return { fit: plain };
     return { tolerance: plain };
   };
 
