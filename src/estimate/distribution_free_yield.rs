@@ -17,3 +17,11 @@ pub struct DistributionFreeYield {
     /// Values and shares of a distribution with the least yield. None if several dimensions may have any distribution.
     pub worst: Option<Vec<[f64; 2]>>,
 }
+
+impl DistributionFreeYield {
+    /// Interval that no distribution leaves. Its lower end is 0 without a proof, because counted bounds need not hold between the values at
+    /// which they are counted. None if nothing is known.
+    pub fn certain_interval(&self) -> Option<[f64; 2]> {
+        self.interval.map(|[least, greatest]| [if self.proven { least } else { 0.0 }, greatest])
+    }
+}

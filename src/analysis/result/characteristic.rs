@@ -136,7 +136,7 @@ impl CharacteristicAnalysis {
     /// are assemblies without a value that were not counted. Returns None if an error is unknown.
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
         if let Some(free) = &self.distribution.distribution_free_yield {
-            return free.interval;
+            return free.certain_interval();
         }
         let value = self.distribution.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };

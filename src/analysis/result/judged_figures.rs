@@ -17,12 +17,11 @@ impl RequirementFigures for CharacteristicAnalysis {
             let known = self.distribution.conditional.as_ref();
             return JudgedFigure { value: known.map(|of| of.value), interval: known.and_then(|of| of.interval) };
         }
-        // The worst distribution decides, not the one that stands in for it. Bounds from points need not hold between them.
-        if let Some(free) = &self.distribution.distribution_free_yield {
-            let interval = free.interval.map(|[least, greatest]| [if free.proven { least } else { 0.0 }, greatest]);
-            return JudgedFigure { value: free.interval.map(|[least, _]| least), interval };
-        }
-        let value = self.distribution.capability.and_then(|of| of.yield_());
+        // The worst distribution decides, not the one that stands in for it.
+        let value = match &self.distribution.distribution_free_yield {
+            Some(free) => free.interval.map(|[least, _]| least),
+            None => self.distribution.capability.and_then(|of| of.yield_()),
+        };
         JudgedFigure { value, interval: self.yield_interval() }
     }
 
@@ -70,7 +69,11 @@ impl RequirementFigures for RequirementBases<'_> {
     type Figure = Option<FigureBasis>;
 
     fn yield_(&self) -> Option<FigureBasis> {
-        self.0.bases().yield_
+        match &self.0.distribution.distribution_free_yield {
+            Some(free) if free.proven => Some(FigureBasis::Proof),
+            Some(free) => free.interval.map(|_| FigureBasis::Points),
+            None => self.0.bases().yield_,
+        }
     }
 
     fn cpk(&self) -> Option<FigureBasis> {

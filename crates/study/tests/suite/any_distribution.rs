@@ -40,6 +40,8 @@ fn a_band_alone_is_bounded_by_its_ends() {
     // No yield of the uniform distribution in its place is reported, and the target lies between both ends.
     assert_eq!((one.distribution.yield_source, one.distribution.capability.unwrap().yield_()), (None, None));
     assert_eq!(one.yield_interval(), free.interval);
+    let target = one.characteristic.target().unwrap();
+    assert_eq!(one.basis_of(target), Some(sensitol::analysis::FigureBasis::Proof));
     assert_eq!(one.verdict(), Some(sensitol_numeric::verdict::Verdict::Inconclusive));
 }
 
@@ -167,6 +169,7 @@ fn bounds_from_points_never_meet_a_target() {
          y = { formula = \"10*exp(-((a - 0.0515)/0.0003)^2) + b\", upper = 0.5, target_yield = 0.99 }",
     );
     assert!(!one.distribution.distribution_free_yield.as_ref().unwrap().proven);
+    assert_eq!(one.yield_interval().unwrap()[0], 0.0);
     assert_eq!(one.verdict(), Some(sensitol_numeric::verdict::Verdict::Inconclusive));
 }
 
