@@ -52,7 +52,7 @@ impl SearchFailure {
         Self { status: Status::OutOfTime, attainable: None }
     }
 
-    /// The same status without a value of a requirement, since some tolerances keep it.
+    /// End with this status and without a value of a requirement, since some tolerances keep it.
     fn without_attainable(self) -> Self {
         Self { attainable: None, ..self }
     }

@@ -68,7 +68,7 @@ impl Tangent<'_> {
     /// Returns the mixed derivatives of every output by these pairs of given variables. An output is a formula of the set or an unknown.
     /// Returns None if a derivative may not exist, and for loops.
     ///
-    /// With the multipliers `lambda = J^-T y_u` of an output `y`, its second derivatives are those of `y - lambda g` along the moves of the
+    /// Second derivatives of an output `y` by its multipliers `lambda = J^-T y_u`. They are those of `y - lambda g` along the moves of the
     /// given variables and the unknowns (Lagrange). One pass a variable gives the products with all others.
     ///
     /// # Cost

@@ -373,7 +373,7 @@ fn a_height_along_the_axes_of_a_pattern_is_no_lever() {
     assert!(relative(plain, 0.1 / 50.0 / 2f64.sqrt()) < 1e-12 && plain == formula, "{plain}, {formula}");
 }
 
-/// With relative costs a zone is one tolerance with one cost, and the place of a pin in its hole is none.
+/// Relative costs: a zone is one tolerance with one cost, and the place of a pin in its hole has none.
 #[test]
 fn relative_costs_are_of_zones_and_not_of_floats() {
     let text = text(
