@@ -38,7 +38,7 @@ pub enum Method {
     ThreePoint,
     /// A quadratic fitted by least squares to a central composite design.
     ResponseSurface,
-    /// Fewest evaluations that reach the wanted accuracy.
+    /// Fewest evaluations that reach the requested accuracy.
     Auto,
 }
 

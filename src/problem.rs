@@ -1,4 +1,4 @@
-//! Problem: dimensions, an assembly function, and the characteristics that are asked of it.
+//! Problem: dimensions, an assembly function, and the requested characteristics.
 
 use std::sync::{Arc, OnceLock};
 
@@ -56,7 +56,7 @@ pub enum ProblemError {
     /// A characteristic is not an output of the function.
     #[error("there is no characteristic `{name}`; known: {known}", known = list(known))]
     UnknownCharacteristic {
-        /// Name of the characteristic that was asked for.
+        /// Name of the characteristic that was requested.
         name: String,
         /// Most similar name, if any.
         nearest: Option<String>,
@@ -400,7 +400,7 @@ impl Problem {
         self.correlation.as_ref()
     }
 
-    /// Characteristics asked for, in order.
+    /// Characteristics requested, in order.
     pub fn characteristics(&self) -> &[Characteristic] {
         &self.characteristics
     }

@@ -92,7 +92,7 @@ pub struct EvaluatorSummary {
     pub crashes: u64,
     /// Deadlines that were missed.
     pub timeouts: u64,
-    /// Lines that were no valid answers.
+    /// Lines that were not valid answers.
     pub garbage: u64,
     /// Points that were sent again.
     pub retried: u64,

@@ -45,7 +45,7 @@ pub enum SweepError {
     /// The dimension does not exist.
     #[error("there is no dimension `{name}` to sweep; known: {}{}", known.join(", "), nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
     UnknownDimension {
-        /// Name of the dimension that was asked for.
+        /// Name of the dimension that was requested.
         name: String,
         /// Most similar name, if any.
         nearest: Option<String>,

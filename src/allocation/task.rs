@@ -37,7 +37,7 @@ pub struct AllocationTask {
     pub setups: Vec<SetUp>,
     /// Groups of dimensions that follow one tolerance each, such as the parts of a zone, for relative costs. They need no offers.
     pub zones: Vec<Priced>,
-    /// Dimensions that are no tolerances, such as the place of a pin in its hole. They get no relative cost.
+    /// Dimensions that are not tolerances, such as the place of a pin in its hole. They get no relative cost.
     pub held: Vec<usize>,
 }
 
@@ -291,7 +291,7 @@ pub enum AllocateError {
         /// Name of the dimension.
         dimension: String,
     },
-    /// Name to recentre that is no dimension.
+    /// Name to recentre that is not a dimension.
     #[error("there is no dimension `{name}` to recentre{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
     UnknownDimension {
         /// Name as given.

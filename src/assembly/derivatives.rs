@@ -2,25 +2,25 @@
 
 use sensitol_numeric::power::Power;
 
-/// Point and directions of the wanted derivatives.
+/// Point and directions of the requested derivatives.
 #[derive(Debug, Clone, Copy)]
 pub struct Directions<'a> {
-    /// Point at which derivatives are wanted.
+    /// Point at which derivatives are requested.
     pub point: &'a [f64],
-    /// Inputs along which first and second derivatives are wanted.
+    /// Inputs along which first and second derivatives are requested.
     pub inputs: &'a [usize],
-    /// Pairs of inputs whose mixed second derivative is wanted.
+    /// Pairs of inputs whose mixed second derivative is requested.
     pub pairs: &'a [(usize, usize)],
 }
 
 /// Derivatives of one output at a point; None for one that does not exist there, as at a kink.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derivatives {
-    /// First derivative by each input asked.
+    /// First derivative by each requested input.
     pub first: Vec<Option<f64>>,
-    /// Second derivative by each input asked.
+    /// Second derivative by each requested input.
     pub second: Vec<Option<f64>>,
-    /// Mixed derivative by both inputs of each pair asked.
+    /// Mixed derivative by both inputs of each requested pair.
     pub mixed: Vec<Option<f64>>,
 }
 

@@ -1,7 +1,7 @@
 //! Interface of assembly functions, and its implementations.
 //!
 //! An assembly function with `N` inputs and `K` outputs maps points `x` in `R^N` to `y` in `R^K`. It receives a batch of points and the
-//! outputs that are wanted. It returns a number or an error for each point and output. Callers use nothing else, so that a formula, a
+//! outputs that are requested. It returns a number or an error for each point and output. Callers use nothing else, so that a formula, a
 //! closed-form model and a CAD system in another process look the same.
 //!
 //! # A new kind of assembly function
@@ -56,7 +56,7 @@ pub use switch::{ContactSets, Switch, SwitchKind, Switches};
 use crate::warning::Warning;
 use sensitol_numeric::power::Power;
 
-/// Interface of an assembly function: object-safe, batches of points, the wanted outputs, and an error per point and output.
+/// Interface of an assembly function: object-safe, batches of points, the requested outputs, and an error per point and output.
 pub trait AssemblyFunction: Send + Sync {
     /// Returns names and units of inputs and outputs, and facts about the function that are known before any evaluation.
     fn signature(&self) -> &Signature;
@@ -78,15 +78,15 @@ pub trait AssemblyFunction: Send + Sync {
         None
     }
 
-    /// Returns the sums of the magnitudes of the terms of `outputs` at a point, in the order asked. Rounding errors of an output are parts
-    /// of this sum. Returns None for an output whose terms are unknown, or if it has no value. This is not an evaluation.
+    /// Returns the sums of the magnitudes of the terms of `outputs` at a point, in the requested order. Rounding errors of an output are
+    /// parts of this sum. Returns None for an output whose terms are unknown, or if it has no value. This is not an evaluation.
     fn magnitudes(&self, outputs: &[usize], point: &[f64]) -> Vec<Option<f64>> {
         let _ = point;
         vec![None; outputs.len()]
     }
 
     /// Evaluates `request.points` for `request.outputs` and writes the answers into `out`. Its rows are the points, and its columns are the
-    /// asked outputs in the order asked.
+    /// outputs in the requested order.
     ///
     /// A point without an answer is an error in `out`, not a panic. Rows that are final are reported by [`Run::finished`]. Between rows,
     /// [`Run::stopped`] returns true if the function must return now. The remaining rows stay unanswered then, which is no error.
@@ -107,7 +107,8 @@ pub trait AssemblyFunction: Send + Sync {
         false
     }
 
-    /// Returns exact derivatives of `outputs` at a point, in the order asked. Returns None for an output without derivatives at any point.
+    /// Returns exact derivatives of `outputs` at a point, in the requested order. Returns None for an output without derivatives at any
+    /// point.
     ///
     /// This is not an evaluation: a function that would have to evaluate points returns None, as by default.
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {

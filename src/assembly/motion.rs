@@ -57,7 +57,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Steps of the scan unless others are asked for: a sine over a whole turn is followed to 0.1 % between them, before the refinement.
+    /// Steps of the scan unless others are requested: a sine over a whole turn is followed to 0.1 % between them, before the refinement.
     pub const STEPS: usize = 64;
     /// Evaluations of one refinement that a costly function gets at most.
     const COSTLY: usize = 8;

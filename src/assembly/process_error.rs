@@ -107,7 +107,7 @@ pub enum ProcessFault {
     /// The process answered with a wrong number of values.
     #[error("the model answered with {found} values where {expected} were asked for")]
     WrongLength {
-        /// Number of characteristics that were asked for.
+        /// Number of characteristics that were requested.
         expected: usize,
         /// Number of values in the answer.
         found: usize,
@@ -120,7 +120,7 @@ pub enum ProcessFault {
         /// Expected columns, one for each dimension.
         columns: usize,
     },
-    /// The process answered a point that was not asked for.
+    /// The process answered a point that was not requested.
     #[error("the model answered point {id}, which was not under way")]
     UnknownPoint {
         /// Number of the point in the answer.
@@ -147,7 +147,7 @@ pub enum ProcessFault {
         /// Answer after steps along one dimension after the other.
         third: Option<f64>,
     },
-    /// The process asked for another attempt at the point every time, so that it says nothing about the model. It is not kept in a journal.
+    /// The process requested another attempt at the point every time, so that it says nothing about the model. It is not kept in a journal.
     #[error("{}", clipped(message))]
     Unable {
         /// Reason of the last attempt in the model's own words.
@@ -234,7 +234,7 @@ fn in_own(name: &str, own: &str, factor: Option<f64>) -> String {
     }
 }
 
-/// Advises on a line that was printed for people.
+/// Advises on a line that was printed for readers.
 fn hint(line: &Quoted) -> &'static str {
     match line.0.is_empty() || line.0.starts_with('{') {
         true => "",

@@ -1,13 +1,13 @@
-//! Request to an assembly function: points, and the wanted outputs.
+//! Request to an assembly function: points, and the requested outputs.
 
 pub use sensitol_numeric::points::Points;
 
-/// Batch of points, and the outputs that are wanted there.
+/// Batch of points, and the outputs that are requested there.
 #[derive(Debug, Clone, Copy)]
 pub struct Request<'a> {
     /// Points, one column per input of the [`Signature`](crate::assembly::Signature).
     pub points: &'a Points,
-    /// Indices of the wanted outputs. Nothing else has to be computed.
+    /// Indices of the requested outputs. Nothing else has to be computed.
     pub outputs: &'a [usize],
 }
 

@@ -6,7 +6,7 @@ use crate::assembly::EvaluationError;
 use crate::assembly::NonRepeatable;
 use sensitol_numeric::power::Power;
 
-/// Answers of a batch: a column per asked output, and an error for each entry without a value.
+/// Answers of a batch: a column per requested output, and an error for each entry without a value.
 ///
 /// An entry starts open. It then becomes either a finite value or an error. An entry that is still open at the end belongs to a point that
 /// was not finished.
@@ -84,7 +84,7 @@ impl Responses {
         self.rows
     }
 
-    /// Returns the number of asked outputs.
+    /// Returns the number of requested outputs.
     pub fn outputs(&self) -> usize {
         self.outputs
     }

@@ -97,7 +97,7 @@ impl<'a> Run<'a> {
         self.finished.is_some()
     }
 
-    /// Reports that these rows of `out` are final: values or errors, for every output asked.
+    /// Reports that these rows of `out` are final: values or errors, for every requested output.
     pub fn finished(&self, rows: &[usize], out: &Responses) {
         if let Some(finished) = self.finished {
             finished(rows, out);

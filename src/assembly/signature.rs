@@ -5,7 +5,7 @@
 pub struct Signature {
     /// Inputs, in the order of a point's coordinates.
     pub inputs: Vec<Input>,
-    /// Outputs that can be asked for.
+    /// Outputs that can be requested.
     pub outputs: Vec<Output>,
     /// True if an evaluation is so costly that answers are stored on disk.
     pub costly: bool,
@@ -23,7 +23,7 @@ pub struct Input {
     pub unit: Option<String>,
 }
 
-/// One value that can be asked for.
+/// One value that can be requested.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Output {
     /// Name of the output.

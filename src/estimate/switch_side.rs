@@ -91,7 +91,7 @@ impl FoundSwitch {
     pub(crate) fn warning(&self, characteristic: &str, sample: Option<u64>) -> Option<Warning> {
         let (switch, probability) = (self.name.clone(), self.probability);
         let change = match self.crossing {
-            // A choice is asked for, and both sides of it are alike.
+            // A choice is requested, and both sides of it are alike.
             _ if probability < TOLD || self.switch.kind == SwitchKind::Choice => return None,
             Crossing::Kink => Change::Kink,
             Crossing::Jump => Change::Jump,

@@ -29,7 +29,7 @@ const PROVEN: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 /// Boxes of either side for up to `FEW` dimensions.
 const BOXES: usize = 20_000;
-/// Boxes of either side if a proof is not asked for: a twentieth of those of a search.
+/// Boxes of either side if a proof is not requested: a twentieth of those of a search.
 const ENCLOSING: usize = 1000;
 /// Dimensions beyond which fewer boxes are examined, in inverse proportion: each box then takes more operations.
 const FEW: usize = 10;

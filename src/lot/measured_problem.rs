@@ -8,7 +8,7 @@ use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::distribution::{Distribution, Normal, PearsonLaw};
 
-/// Relative difference of mean and sigma, in sigmas, up to which a scaled distribution is the wanted one.
+/// Relative difference of mean and sigma, in sigmas, up to which a scaled distribution is the requested one.
 const SAME: f64 = 1e-6;
 
 /// Problem with the measured mean, sigma, shape and correlation of the parts.

@@ -10,7 +10,7 @@ use crate::plan::Point;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum ClimbEnd {
-    /// The estimated error of every characteristic is as small as wanted.
+    /// The estimated error of every characteristic is as small as requested.
     Reached,
     /// The budget does not allow the next evaluations.
     Budget,
@@ -24,9 +24,9 @@ pub enum ClimbEnd {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct AutoAccount {
-    /// Relative error of sigma that was wanted.
+    /// Relative error of sigma that was requested.
     pub accuracy: f64,
-    /// Wanted accuracies of the other results.
+    /// Requested accuracies of the other results.
     pub accuracies: Accuracies,
     /// Reason why the refinement ended.
     pub rest: ClimbEnd,

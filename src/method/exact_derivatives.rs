@@ -13,7 +13,7 @@ use sensitol_numeric::surrogate::Univariate;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ExactDerivatives {
-    /// First derivatives by every dimension of the problem, in order; None also for dimensions that were not asked for.
+    /// First derivatives by every dimension of the problem, in order; None also for dimensions that were not requested.
     pub first: Vec<Option<f64>>,
     /// Second derivatives by every dimension of the problem, in order.
     pub second: Vec<Option<f64>>,
@@ -52,7 +52,7 @@ impl ExactDerivatives {
     }
 
     /// Returns the exact derivatives that a report shows beside evaluated ones, with the mixed derivatives of these pairs of positions.
-    /// Returns None for every characteristic if only differences are wanted.
+    /// Returns None for every characteristic if only differences are requested.
     pub(super) fn beside(
         problem: &Problem,
         plan: &dyn Plan,

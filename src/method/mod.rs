@@ -58,7 +58,7 @@ pub enum MethodError {
     /// The plan needs more evaluations than the budget allows.
     #[error("{method} needs {needed} evaluations, more than the budget of {budget}{}", instead(.fitting))]
     OverBudget {
-        /// Name of the method that was asked for.
+        /// Name of the method that was requested.
         method: &'static str,
         /// Number of evaluations that the method needs.
         needed: usize,
@@ -76,7 +76,7 @@ pub enum MethodError {
     /// Inputs that vary together as a whole, while the method integrates over each input by itself.
     #[error("{method} integrates over one input after the other, and {} vary together as a whole: use full or auto", dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))]
     JointInputs {
-        /// Name of the method that was asked for.
+        /// Name of the method that was requested.
         method: &'static str,
         /// Names of the dimensions of the first block.
         dimensions: Vec<String>,
@@ -84,14 +84,14 @@ pub enum MethodError {
     /// An option that the method does not have.
     #[error("{method} has no choice of {option}; only {only} has one")]
     OptionDoesNotApply {
-        /// Name of the method that was asked for.
+        /// Name of the method that was requested.
         method: &'static str,
         /// Name of the option that was given.
         option: &'static str,
         /// Names of the methods that have this option.
         only: &'static str,
     },
-    /// Exact derivatives were asked for, but the characteristic is known by its values only.
+    /// Exact derivatives were requested, but the characteristic is known by its values only.
     #[error("`{characteristic}` has no exact derivatives: it depends on a model that returns values only")]
     DerivativesUnknown {
         /// Name of the characteristic without derivatives.
@@ -157,7 +157,7 @@ pub enum MethodError {
     /// The method needs more evaluations than a limit allows.
     #[error("{method} needs {} evaluations for {dimensions} varying dimensions, {limit}{}", count(*.needed), instead(.fitting))]
     TooMany {
-        /// Name of the method that was asked for.
+        /// Name of the method that was requested.
         method: &'static str,
         /// Number of dimensions that vary in the problem.
         dimensions: usize,
@@ -171,7 +171,7 @@ pub enum MethodError {
     /// More dimensions vary than the method can fit a surface to.
     #[error("{method} fits at most {most} varying dimensions, and {dimensions} vary{}", instead(.fitting))]
     TooManyDimensions {
-        /// Name of the method that was asked for.
+        /// Name of the method that was requested.
         method: &'static str,
         /// Number of dimensions that vary in the problem.
         dimensions: usize,
@@ -249,7 +249,7 @@ impl MethodError {
     }
 }
 
-/// Greatest number of evaluations that a method may ask for.
+/// Greatest number of evaluations that a method may request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EvaluationLimit {

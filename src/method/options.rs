@@ -21,9 +21,9 @@ use sensitol_numeric::names::UnknownName;
 pub struct Options {
     /// Method that is run.
     pub method: Method,
-    /// Wanted relative error of sigma, for `auto`; None for `ACCURACY`.
+    /// Target relative error of sigma, for `auto`; None for `ACCURACY`.
     pub accuracy: Option<f64>,
-    /// Wanted accuracies of the other results, for `auto`.
+    /// Requested accuracies of the other results, for `auto`.
     pub accuracies: Accuracies,
     /// Budget: greatest number of evaluations; None for no budget.
     pub budget: Option<usize>,
@@ -61,47 +61,47 @@ pub struct Options {
     pub sample_tails: bool,
 }
 
-/// Wanted absolute errors of results other than sigma; None if no accuracy is wanted.
+/// Target absolute errors of results other than sigma; None if no accuracy is requested.
 ///
-/// `auto` reaches them by tightening the wanted error of sigma until the estimates of these errors are small enough too.
+/// `auto` reaches them by tightening the target error of sigma until the estimates of these errors are small enough too.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Accuracies {
-    /// Wanted absolute error of the skewness.
+    /// Target absolute error of the skewness.
     pub skewness: Option<f64>,
-    /// Wanted absolute error of the kurtosis.
+    /// Target absolute error of the kurtosis.
     pub kurtosis: Option<f64>,
-    /// Wanted absolute error of the yield, as a share.
+    /// Target absolute error of the yield, as a share.
     pub yield_: Option<f64>,
 }
 
 impl Accuracies {
-    /// Sets the wanted absolute error of the skewness.
+    /// Sets the target absolute error of the skewness.
     #[must_use]
     pub fn with_skewness(mut self, error: f64) -> Self {
         self.skewness = Some(error);
         self
     }
 
-    /// Sets the wanted absolute error of the kurtosis.
+    /// Sets the target absolute error of the kurtosis.
     #[must_use]
     pub fn with_kurtosis(mut self, error: f64) -> Self {
         self.kurtosis = Some(error);
         self
     }
 
-    /// Sets the wanted absolute error of the yield, as a share.
+    /// Sets the target absolute error of the yield, as a share.
     #[must_use]
     pub fn with_yield(mut self, error: f64) -> Self {
         self.yield_ = Some(error);
         self
     }
 
-    /// True if the accuracy of any of these figures is wanted.
+    /// True if the accuracy of any of these figures is requested.
     pub(crate) fn any(&self) -> bool {
         self.wanted().iter().any(|(_, wanted)| wanted.is_some())
     }
 
-    /// Returns each figure with its wanted error.
+    /// Returns each figure with its target error.
     pub(crate) fn wanted(&self) -> [(Figure, Option<f64>); 3] {
         [(Figure::Skewness, self.skewness), (Figure::Kurtosis, self.kurtosis), (Figure::Yield, self.yield_)]
     }

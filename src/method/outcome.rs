@@ -15,7 +15,7 @@ use sensitol_numeric::surrogate::{DerivativeOrigin, Surrogate, Univariate};
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Outcome {
-    /// Method that was asked for.
+    /// Method that was requested.
     pub asked: Method,
     /// Method that was run.
     pub method: Method,
@@ -45,7 +45,7 @@ pub struct Fitted {
     pub centre: Option<f64>,
     /// Exact derivatives at the means; None if the assembly function has none, or was not asked for them.
     pub exact: Option<ExactDerivatives>,
-    /// Univariate part of every dimension, in the problem's order; None if it is unknown or was not asked for.
+    /// Univariate part of every dimension, in the problem's order; None if it is unknown or was not requested.
     pub parts: Vec<Option<Univariate>>,
     /// Mixed derivatives of the pairs examined, in sigmas; None if a derivative is lost or was not evaluated.
     pub mixed: Vec<Option<Mixed>>,

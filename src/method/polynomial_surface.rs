@@ -27,7 +27,7 @@ pub(super) struct PolynomialSurface {
 
 impl PolynomialSurface {
     /// Returns the surfaces of all characteristics. Returns None for a formula that is not known to be a polynomial, for one with terms
-    /// that no surface holds, and if differences are asked for.
+    /// that no surface holds, and if differences are requested.
     pub(super) fn all(problem: &Problem, plan: &dyn Plan, options: &Options) -> Vec<Option<Self>> {
         if options.derivatives == Some(DerivativeSource::Difference) {
             return vec![None; problem.characteristics().len()];

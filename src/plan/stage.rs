@@ -42,7 +42,7 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// Description for people.
+    /// Description for readers.
     pub fn words(self) -> &'static str {
         match self {
             Self::Centre => "all dimensions at their means",

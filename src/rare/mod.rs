@@ -137,7 +137,7 @@ pub struct RareEvents {
     pub samples: u64,
     /// Evaluations of the surrogate.
     pub surrogate_evaluations: u64,
-    /// True if the wanted accuracy was reached. None if none was wanted.
+    /// True if the requested accuracy was reached. None if none was requested.
     pub reached: Option<bool>,
     /// Evaluations in which the model returned another value than before at the nominal point.
     // Reported as warnings.
@@ -249,7 +249,7 @@ pub enum RareError {
     /// Number of points that is too small or too large.
     #[error("rare events take {least} to {most} points, not {samples}")]
     Samples {
-        /// Number of points asked for.
+        /// Number of points requested.
         samples: u64,
         /// Fewest points.
         least: u64,
@@ -294,9 +294,9 @@ const LEARNING: u64 = 2;
 
 /// Estimates the probability beyond every limit.
 ///
-/// Cost: the evaluations of the surrogate's method, and the points asked for. Accuracy: standard errors and 95 %
-/// intervals. With a good surrogate some hundred points give a probability near 3e-6 to 5 %. The upper end of the
-/// interval has what they cannot exclude ([`Unmet`]): some thousand points exclude a corner of three dimensions.
+/// Cost: the evaluations of the surrogate's method, and the points requested. Accuracy: standard errors and 95 % intervals. With a good
+/// surrogate some hundred points give a probability near 3e-6 to 5 %. The upper end of the interval has what they cannot exclude
+/// ([`Unmet`]): some thousand points exclude a corner of three dimensions.
 ///
 /// # Errors
 /// When no characteristic has a limit, a dimension cannot be sampled, or there is no surrogate.

@@ -20,10 +20,10 @@ use crate::verification::unseen_share::unseen;
 use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::surrogate::Surrogate;
 
-/// Check points near the means, if none are asked for by number.
+/// Check points near the means, if none are requested by number.
 const NEAR: usize = 12;
 
-/// Number of check points for a number of varying dimensions, `asked` if they are asked for by number.
+/// Number of check points for a number of varying dimensions, `asked` if they are requested by number.
 ///
 /// Without a number these are 12 near the means, and a third as many as those and the `2 N + 1` points of a second-order method where
 /// decisions fall, at least 6 and at most 18. [`verify_by_checks`] evaluates up to 8 more if the surface is refuted.

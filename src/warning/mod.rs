@@ -594,7 +594,7 @@ warnings! {
         /// Standard error of that share.
         error: f64,
     };
-    /// The estimated error is larger than the wanted accuracy.
+    /// The estimated error is larger than the requested accuracy.
     UnderResolved = "under-resolved" by surface::under_resolved {
         /// The characteristic.
         characteristic: String,
@@ -602,7 +602,7 @@ warnings! {
         figure: Figure,
         /// The estimated error, relative for sigma. None if it is unknown.
         error: Option<f64>,
-        /// The wanted error.
+        /// The target error.
         wanted: f64,
         /// True if the budget ended the analysis.
         budget: bool,
@@ -696,7 +696,7 @@ warnings! {
         /// The switch beyond which assemblies decide that are rare in the sample. None if points of the sample decide.
         switch: Option<String>,
     };
-    /// The standard errors of a sample are larger than wanted.
+    /// The standard errors of a sample are larger than requested.
     TargetErrorMissed = "target-error-missed" by sample::target_error_missed {
         /// Points drawn.
         points: u64,

@@ -61,7 +61,7 @@ pub enum Loss {
     },
 }
 
-/// Figure with a wanted accuracy.
+/// Figure with a requested accuracy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]

@@ -63,7 +63,8 @@ impl<'s> Look<'s> {
         self.tell_all(&warnings.iter().map(WarningReport::of).collect::<Vec<_>>());
     }
 
-    /// Prints the warnings of a report that ask for attention. Of many with the same code it prints the first few, then the number and names of the others.
+    /// Prints the warnings of a report that need attention. Of many with the same code it prints the first few, then the number and names
+    /// of the others.
     pub(super) fn tell_all(self, warnings: &[WarningReport]) {
         let asking: Vec<&WarningReport> = warnings.iter().filter(|one| one.asks()).collect();
         let mut more: Vec<(&str, Vec<&str>)> = Vec::new();

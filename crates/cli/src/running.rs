@@ -27,7 +27,7 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// Starts the clock with a limit in seconds, and installs the handler of Ctrl-C. Fails if the date that is asked for is none.
+    /// Starts the clock with a limit in seconds, and installs the handler of Ctrl-C. Fails if the requested date does not exist.
     pub(super) fn start(seconds: Option<f64>) -> Result<Self, Failure> {
         let date = today()?;
         interrupt::listen();

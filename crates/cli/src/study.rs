@@ -66,7 +66,7 @@ pub(super) fn read_file(path: &Path, asked: &HowArgs, externals: Externals) -> R
     changed(Study::read_with(path, externals)?, asked)
 }
 
-/// Reads a stack-up table as a study, and prints what was read. A name of its characteristic is not asked for.
+/// Reads a stack-up table as a study, and prints what was read. The name of its characteristic is not needed.
 pub(super) fn read_table(
     path: &Path,
     table: &TableArgs,

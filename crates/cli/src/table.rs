@@ -206,7 +206,7 @@ pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// Text of a table that is no workbook.
+/// Text of a table that is not a workbook.
 pub(super) fn text(path: &Path, bytes: Vec<u8>) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|_| {
         let help = "save it as .xlsx or as CSV in UTF-8, or copy the cells and paste them into `sensitol import -`";

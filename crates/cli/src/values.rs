@@ -261,7 +261,7 @@ pub(super) enum StackArg {
     Markdown,
 }
 
-/// Which sensitivities are wanted, as values of an option.
+/// Which sensitivities are requested, as values of an option.
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub(super) enum SensitivitiesArg {
     /// Of the dimensions that have a tolerance

@@ -130,7 +130,7 @@ pub struct Greeting {
     pub nominal: Vec<f64>,
     /// Names and values of constants.
     pub constants: Vec<(String, f64)>,
-    /// Dimensions and constants that the program need not know.
+    /// Dimensions and constants that the program does not use.
     pub optional: Vec<String>,
 }
 
@@ -147,7 +147,7 @@ impl Greeting {
         self
     }
 
-    /// Sets the dimensions and constants that the program need not know.
+    /// Sets the dimensions and constants that the program does not use.
     #[must_use]
     pub fn with_optional(mut self, names: Vec<String>) -> Self {
         self.optional = names;

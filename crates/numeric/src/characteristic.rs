@@ -1,4 +1,4 @@
-//! Key characteristic (KC): one output of the assembly function that a study asks for.
+//! Key characteristic (KC): one output of the assembly function that a study requests.
 
 use serde::Serialize;
 

@@ -46,7 +46,7 @@ pub enum InspectionError {
         /// Width of the guard band as given.
         value: f64,
     },
-    /// The wanted rate is 0 or less, or 1 or more.
+    /// The requested rate is 0 or less, or 1 or more.
     #[error("the share of bad parts that are accepted must lie between 0 and 1, both excluded, got {value}")]
     FalseAccept {
         /// Share of bad parts accepted, as given.

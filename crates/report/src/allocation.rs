@@ -76,7 +76,7 @@ pub struct AllocationReport {
     pub(crate) joint_yield: BeforeAfter<Option<JointYield>>,
     /// Every characteristic before and after.
     pub(crate) characteristics: Vec<AllocatedCharacteristic>,
-    /// Cost against what is required.
+    /// Cost against the requirements.
     pub(crate) front: Vec<FrontPoint>,
     /// The model itself at the tolerances found, by Monte Carlo.
     pub(crate) confirmation: Option<ConfirmationReport>,

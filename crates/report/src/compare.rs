@@ -34,7 +34,7 @@ pub struct CompareReport {
     pub(crate) reference_samples: u64,
     /// Sampler that drew them.
     pub(crate) reference_method: &'static str,
-    /// The results of every characteristic asked for.
+    /// The results of every characteristic requested.
     pub(crate) characteristics: Vec<ComparedReport>,
     /// Methods that were not run, and why.
     pub(crate) not_run: Vec<NotRun>,

@@ -33,7 +33,7 @@ pub struct DifferenceReport {
     pub(crate) evaluations: [u64; 2],
     /// Inputs and limits that differ.
     pub(crate) changes: Vec<Changed>,
-    /// The figures of every characteristic that either study asks for.
+    /// The figures of every characteristic that either study requests.
     pub(crate) characteristics: Vec<Compared>,
 }
 

@@ -64,7 +64,7 @@ pub(super) fn seed(run: &RunSummary) -> String {
     run.seed.map_or(String::new(), |seed| format!(", seed {seed}"))
 }
 
-/// Returns the warnings that ask for attention and whose characteristic (None for the whole study) `about` accepts.
+/// Returns the warnings that need attention and whose characteristic (None for the whole study) `about` accepts.
 pub(super) fn findings(all: &[WarningReport], about: impl Fn(Option<&str>) -> bool) -> Vec<Element> {
     let found = |one: &WarningReport| {
         let actions = one.advice.iter().map(ToString::to_string).collect();

@@ -221,8 +221,8 @@ impl DimensionReport {
 const PEARSON_DIFFERS: &str = "pearson-differs";
 
 impl WarningReport {
-    /// True if the warning asks for attention. Documents state a Pearson fit that differs as a detail, because no printed figure rests
-    /// on the fit then.
+    /// True if the warning needs attention. Documents state a Pearson fit that differs as a detail, because no printed figure rests on the
+    /// fit then.
     pub fn asks(&self) -> bool {
         self.code != PEARSON_DIFFERS
     }

@@ -41,7 +41,7 @@ pub struct SweepReport {
     /// Points, time, and the reason of an early end.
     #[serde(flatten)]
     pub(crate) run: RunSummary,
-    /// The results of every characteristic asked for.
+    /// The results of every characteristic requested.
     pub characteristics: Vec<SweptReport>,
     /// Warnings, each once, with the values of the parameter at which an assumption fails.
     pub warnings: Vec<WarningReport>,
@@ -125,7 +125,7 @@ pub struct SweptPointReport {
     /// Everything that is required of it, the target yield included.
     #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
     pub(crate) requirements: Vec<Judged>,
-    /// The rejects with their error, for people.
+    /// The rejects with their error, for readers.
     #[serde(skip)]
     rejects: Rejects,
 }

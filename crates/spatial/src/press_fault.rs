@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PressFault {
-    /// Contacts on a feature that is no plane.
+    /// Contacts on a feature that is not a plane.
     #[error("presses on {} `{feature}`, and needs a plane", article(kind))]
     NoPlane {
         /// Name of the feature.
@@ -12,7 +12,7 @@ pub enum PressFault {
         /// Kind of the feature.
         kind: &'static str,
     },
-    /// A contact that is no point.
+    /// A contact that is not a point.
     #[error("has {} `{feature}` among its targets, and needs points", article(kind))]
     NoPoint {
         /// Name of the feature.

@@ -323,7 +323,7 @@ pub enum StudyFault {
     /// A configuration with the reserved name `all`.
     #[error("the name `all` stands for every configuration")]
     ReservedConfiguration,
-    /// A configuration is asked for, but the study has none.
+    /// A configuration is requested, but the study has none.
     #[error("the study has no [configurations]")]
     NoConfigurations,
     /// A correlation between two columns of one measured file.
@@ -448,7 +448,7 @@ pub enum StudyFault {
         /// Reason why it has no value.
         reason: String,
     },
-    /// A dimension or constant that is no input of the model and that no formula uses.
+    /// A dimension or constant that is not an input of the model and that no formula uses.
     #[error("the model `{model}` has no input `{name}`, and no formula uses it")]
     UnknownInput {
         /// Name or command of the model.

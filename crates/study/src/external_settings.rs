@@ -36,7 +36,7 @@ pub struct Externals {
     pub sentinels: bool,
     /// Name of the configuration; None for the study as written.
     pub configuration: Option<String>,
-    /// True if only the points are wanted, which something else will answer. No program is started then.
+    /// True if only the points are requested, which something else will answer. No program is started then.
     pub unanswered: bool,
     /// Function that answers in place of a program.
     pub host: Option<Host>,
@@ -118,7 +118,7 @@ impl Externals {
         self
     }
 
-    /// Sets that only the points are wanted, which something else will answer.
+    /// Sets that only the points are requested, which something else will answer.
     #[must_use]
     pub fn with_unanswered(mut self, unanswered: bool) -> Self {
         self.unanswered = unanswered;
@@ -151,7 +151,7 @@ pub enum JournalPlace {
 }
 
 impl JournalPlace {
-    /// Place that the command line asks for: a file, `none`, or by default beside the study.
+    /// Place that the command line requests: a file, `none`, or by default beside the study.
     pub fn asked(path: Option<&Path>) -> Self {
         match path {
             None => Self::BesideStudy,

@@ -161,7 +161,7 @@ pub struct Study {
     /// Names of the configurations.
     pub configurations: Vec<String>,
     /// The study in plain keys, as TOML. Short forms such as relative dimensions are written out, each with its origin as comment. The
-    /// configuration that was asked for is set. Its analysis gives the same numbers.
+    /// configuration that was requested is set. Its analysis gives the same numbers.
     pub expanded: String,
     /// Unknowns, equations and free motions of an assembly in space; None if the study has none.
     pub mobility: Option<Mobility>,

@@ -45,7 +45,7 @@ impl Study {
     ///
     /// # Errors
     /// Fails if a dimension has no entry of its own or is measured, if correlations are to be added to a study in JSON, or if the new text
-    /// does not give the wanted figures.
+    /// does not give the requested figures.
     ///
     /// ```
     /// use sensitol_study::{Study, UpdatedSpread};

@@ -1,6 +1,6 @@
 //! Rewrites a study with other tolerances and nominal values. Everything else stays as it was written, comments included.
 //!
-//! Only the numbers concerned are replaced in the text. The new text is read again and must give the wanted dimensions.
+//! Only the numbers concerned are replaced in the text. The new text is read again and must give the requested dimensions.
 
 use std::ops::Range;
 
@@ -42,7 +42,7 @@ pub enum RewriteError {
     /// The new text cannot be read as a study.
     #[error("the study written anew cannot be read: {0}")]
     Unreadable(Box<StudyError>),
-    /// The new text gives another dimension than wanted.
+    /// The new text gives another dimension than requested.
     #[error("dimension `{dimension}` written anew is not what was wanted; change it by hand")]
     NotTheSame {
         /// The dimension.
@@ -50,7 +50,7 @@ pub enum RewriteError {
     },
 }
 
-/// Significant digits of a tolerance. They are cut off, not rounded, so that a written tolerance is never wider than the wanted one.
+/// Significant digits of a tolerance. They are cut off, not rounded, so that a written tolerance is never wider than the requested one.
 const DIGITS: usize = 6;
 /// Greatest number of decimals that are written without an exponent.
 const LONGEST: i32 = 20;
@@ -76,11 +76,11 @@ pub(crate) fn edited(old: &str, mut edits: Vec<(Range<usize>, String)>) -> Strin
 impl Study {
     /// Rewrites the study with the tolerances and nominal values of `wanted`, a problem with the same dimensions.
     ///
-    /// Tolerances have six digits and are cut off, so that they are never wider than wanted; nominal values are rounded to a ten
+    /// Tolerances have six digits and are cut off, so that they are never wider than requested; nominal values are rounded to a ten
     /// thousandth of their sigma.
     ///
     /// # Errors
-    /// Fails if a dimension that has changed is a mixture of parts, or if the new text does not give the wanted dimensions.
+    /// Fails if a dimension that has changed is a mixture of parts, or if the new text does not give the requested dimensions.
     ///
     /// ```
     /// use sensitol_study::Study;

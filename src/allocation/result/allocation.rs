@@ -335,7 +335,7 @@ pub struct Allocation {
     pub joint: [Option<JointYield>; 2],
     /// Front of cost against yield.
     pub front: Vec<FrontPoint>,
-    /// Sample of the model at the tolerances after, if a confirmation was asked for.
+    /// Sample of the model at the tolerances after, if a confirmation was requested.
     pub confirmation: Option<Simulation>,
     /// Evaluations and time, including those of a confirmation by Monte Carlo, and the reason for an early end.
     #[serde(flatten)]

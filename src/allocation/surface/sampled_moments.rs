@@ -69,7 +69,7 @@ impl SampledCorrection {
         Some(Self { sigma, offset: [0.0; 4], slopes: groups.iter().map(slope).collect::<Option<_>>()? })
     }
 
-    /// Factors at which [`of_widths`](Self::of_widths) asks for moments: below and above 1.
+    /// Factors at which [`of_widths`](Self::of_widths) requests moments: below and above 1.
     pub(in crate::allocation) fn width_factors() -> [f64; 2] {
         [-WIDTH_STEP, WIDTH_STEP].map(libm::exp)
     }

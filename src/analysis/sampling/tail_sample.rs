@@ -15,8 +15,8 @@ use sensitol_numeric::verdict::Verdict;
 /// Most points within a budget: as many as `simulate` takes for rare events of an external program.
 const MOST: usize = 1000;
 
-/// Most points of the model in tails that check points refute, after `spent` evaluations: none but for `auto` of a costly model with limits,
-/// whose number of check points is not asked for.
+/// Most points of the model in tails that check points refute, after `spent` evaluations: none but for `auto` of a costly model with
+/// limits, whose number of check points is not requested.
 pub fn most_tail_points(problem: &Problem, options: &Options, spent: usize) -> usize {
     let signature = problem.function().signature();
     let limited = problem.characteristics().iter().any(|one| one.limits().exist());
@@ -30,8 +30,8 @@ pub fn most_tail_points(problem: &Problem, options: &Options, spent: usize) -> u
 }
 
 /// Decides the yields whose surfaces are refuted by points of the model, within the budget, and without one by at most
-/// [`MOST_TAIL_POINTS`]. Nothing is evaluated for any other method, with a number of check points that was asked for, and where the interval
-/// of the check points suffices for the target or the wanted accuracy.
+/// [`MOST_TAIL_POINTS`]. Nothing is evaluated for any other method, with a number of check points that was requested, and where the
+/// interval of the check points suffices for the target or the requested accuracy.
 pub(in crate::analysis) fn decide(
     evaluator: &Evaluator<'_>,
     outcome: &Outcome,
@@ -55,7 +55,7 @@ pub(in crate::analysis) fn decide(
     figures
 }
 
-/// True if the check points leave a yield open: its target is not decided, and its wanted accuracy is not reached.
+/// True if the check points leave a yield open: its target is not decided, and its requested accuracy is not reached.
 fn is_open(one: &CharacteristicAnalysis, options: &Options) -> bool {
     let sampled = one.evidence.model_sampled.is_some();
     let decided = matches!(one.verdict(), Some(Verdict::Met | Verdict::Missed));

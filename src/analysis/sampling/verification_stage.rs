@@ -276,7 +276,7 @@ fn model_moments(one: &CharacteristicAnalysis, found: &SampledFigures) -> Option
     Some(MomentFigures::of(moments, one.characteristic.limits()))
 }
 
-/// Verifications of the `open` characteristics of a costly model at check points, `asked` if they were asked for by number.
+/// Verifications of the `open` characteristics of a costly model at check points, `asked` if they were requested by number.
 fn check(
     evaluator: &Evaluator<'_>,
     outcome: &Outcome,
@@ -297,7 +297,7 @@ fn check(
         .map(|(c, (shares, nodes))| Target { surrogate: surface(c).filter(|_| open.contains(&c)), shares, nodes })
         .collect();
     let most = check_points(asked, varying.len());
-    // A number that was asked for is kept. Within it, and without one, a refuted surface takes up to `MOST_LOCATING` points more.
+    // A number that was requested is kept. Within it, and without one, a refuted surface takes up to `MOST_LOCATING` points more.
     let budget = match (asked, evaluator.remaining()) {
         (Some(asked), left) => Some(left.map_or(asked, |left| left.min(asked))),
         (None, left) => left,

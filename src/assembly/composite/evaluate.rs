@@ -14,7 +14,7 @@ use crate::assembly::{EvaluationError, Points, Request, Responses, Run, in_block
 const EXPLAINED: usize = 1 << 17;
 
 impl Composite {
-    /// Fills the outputs that a request asks for, with what that cost.
+    /// Fills the requested outputs, with their cost.
     pub(super) fn evaluate_points(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let origins = self.origins(request.outputs);
         let needs: Vec<Needs> = origins.iter().map(|&origin| self.needs(origin)).collect();

@@ -60,13 +60,13 @@ pub struct FormulaSet {
     pub(super) order: Vec<usize>,
     pub(super) graph: Graph,
     pub(super) roots: Vec<NodeId>,
-    /// Variables of every formula, computed when they are first asked for.
+    /// Variables of every formula, computed when they are first requested.
     variables: Vec<OnceLock<Vec<usize>>>,
     /// Node of the graph for each node of every formula.
     pub(super) places: Vec<Vec<NodeId>>,
-    /// Switches of the formulas that were last asked for, because the same ones are asked for repeatedly.
+    /// Switches of the formulas that were last requested, because the same ones are requested repeatedly.
     pub(super) margins: Mutex<Option<(Vec<usize>, Arc<Margins>)>>,
-    /// Program of the outputs that were last asked for, because the same ones are asked for repeatedly.
+    /// Program of the outputs that were last requested, because the same ones are requested repeatedly.
     program: Mutex<Option<(Vec<usize>, Arc<Program>)>>,
     /// Last program of bounds. Terms that cancel are removed from its sums.
     bounding: Mutex<Option<(usize, Arc<Program>)>>,

@@ -62,7 +62,7 @@ impl Expressions {
     }
 }
 
-/// Expressions of one stage that its block asks for.
+/// Expressions of one stage that its block requests.
 #[derive(Debug, Default)]
 pub(crate) struct StageExpressions {
     /// Values, which every pass computes.

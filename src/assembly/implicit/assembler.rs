@@ -22,7 +22,7 @@ pub(in crate::assembly) struct Assembler {
     /// Dimensions to which the start values belong.
     nominal: Vec<f64>,
     anchor: Mutex<Option<Result<Arc<Anchor>, Box<AssemblyFailure>>>>,
-    /// Solver of many points, made when it is first asked for. None if the conditions have none.
+    /// Solver of many points, made when it is first requested. None if the conditions have none.
     batch: OnceLock<Option<BatchSolver>>,
 }
 

@@ -58,7 +58,7 @@ pub struct Conditions {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConditionsError {
-    /// The start lies outside its bounds, or the bounds are no interval.
+    /// The start lies outside its bounds, or the bounds are not an interval.
     #[error("the start {start} of `{name}` does not lie between its bounds {lower} and {upper}")]
     StartOutside {
         /// Name of the unknown.

@@ -1,8 +1,8 @@
-//! `auto`: as few evaluations as the wanted accuracy takes.
+//! `auto`: as few evaluations as the requested accuracy takes.
 //!
 //! It starts like `second-order`, with parabolas for 2N+1 evaluations. Twelve check points of the dimensions' distribution (a Latin
 //! hypercube in mirrored pairs) compare the surrogate with the model. While the residuals there, and the terms that polynomials may hide,
-//! exceed the wanted error of sigma, it adds the evaluations that are expected to help:
+//! exceed the target error of sigma, it adds the evaluations that are expected to help:
 //!
 //! - two nodes more for dimensions in which three points hide too much;
 //! - interactions if even powers are left: up to twelve dimensions pair by pair, strongest first. With more dimensions, probes move all
@@ -39,7 +39,7 @@ use crate::problem::Problem;
 use crate::warning::Figure;
 use start::Start;
 
-/// Relative error of sigma that is wanted if the options give none.
+/// Relative error of sigma that is requested if the options give none.
 pub const ACCURACY: f64 = 0.01;
 /// Greatest number of pairs that are listed if a product of all slopes gives every pair an interaction.
 const LISTED: usize = 20_000;
@@ -122,8 +122,8 @@ impl Procedure for Auto {
     }
 }
 
-/// Refines until `excess` is no more than 1, as far as tightening the wanted error of sigma can reach that. `excess` is the largest
-/// estimated error of an outcome divided by the wanted one.
+/// Refines until `excess` is no more than 1, as far as tightening the target error of sigma can reach that. `excess` is the largest
+/// estimated error of an outcome divided by the requested one.
 pub fn climb_until(
     problem: &Problem,
     options: &Options,
@@ -150,7 +150,7 @@ pub fn climb_until(
     }
 }
 
-/// Returns the wanted relative error of sigma, after a check of all wanted errors.
+/// Returns the target relative error of sigma, after a check of all target errors.
 fn accuracy(options: &Options) -> Result<f64, MethodError> {
     let accuracy = options.accuracy.unwrap_or(ACCURACY);
     for (figure, wanted) in [(Figure::Sigma, Some(accuracy))].into_iter().chain(options.accuracies.wanted()) {

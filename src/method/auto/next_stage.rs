@@ -16,15 +16,15 @@ use crate::problem::Problem;
 
 /// Mirrored pairs of points in a set of check points: twelve points.
 const CHECKS: usize = 6;
-/// Estimated error, as part of the wanted one, above which a second set of check points confirms the estimate.
+/// Estimated error, as part of the requested one, above which a second set of check points confirms the estimate.
 const CONFIRM: f64 = 0.1;
 /// Fewest dimensions for which a second set confirms the estimate.
 const CONFIRM_FROM: usize = 5;
 /// Greatest number of sets of check points.
 const SETS: usize = 3;
-/// Greatest estimated error, as multiple of the wanted one, that a further set may sharpen.
+/// Greatest estimated error, as multiple of the requested one, that a further set may sharpen.
 const NEAR: f64 = 2.0;
-/// Share of even residuals, as part of the wanted error, above which further interactions are examined.
+/// Share of even residuals, as part of the target error, above which further interactions are examined.
 const PAIRS: f64 = 0.1;
 /// Greatest number of characteristics that are examined far out along their steepest line.
 const LINES: usize = 4;
@@ -46,11 +46,11 @@ const SAMPLED: usize = 1024;
 const JUDGING: usize = 12;
 /// Number of probes of the first fit.
 const FITTED: usize = 6;
-/// Share of odd residuals, as part of the wanted error, below which a probe needs no mirror image.
+/// Share of odd residuals, as part of the target error, below which a probe needs no mirror image.
 const ALONE: f64 = 0.1;
 /// Factor by which the number of fitted probes grows.
 const GROWTH: f64 = 1.25;
-/// Finest error of sigma that is aimed at to reach the wanted error of another result.
+/// Finest error of sigma that is aimed at to reach the target error of another result.
 const FINEST: f64 = 1e-7;
 /// Greatest number of evaluations worth their price, as multiple of those of every second derivative.
 const OVER_FULL: f64 = 1.3;
@@ -143,7 +143,7 @@ impl<'p> Climb<'p> {
         climb
     }
 
-    /// Tightens the wanted error of sigma by a factor below 1. Returns true if that can lead to further evaluations.
+    /// Tightens the target error of sigma by a factor below 1. Returns true if that can lead to further evaluations.
     pub(super) fn tighten(&mut self, factor: f64) -> bool {
         let on = self.rest == Some(ClimbEnd::Reached) && self.wanted > FINEST;
         if on {
@@ -282,7 +282,7 @@ impl<'p> Climb<'p> {
         is_product(&self.plan, known, &self.bought, view, self.wanted)
     }
 
-    /// Goes on to the next finer error on the way to the wanted one. Returns true if there is one.
+    /// Goes on to the next finer error on the way to the requested one. Returns true if there is one.
     fn descend(&mut self) -> bool {
         let on = self.accuracy > self.wanted * (1.0 + TWINS);
         if on {

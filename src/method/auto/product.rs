@@ -7,7 +7,7 @@ use crate::method::auto::characteristic_state::View;
 use crate::method::auto::chosen_points::ChosenPoints;
 use crate::plan::{DifferencePlan, KnownAnswers, Point};
 
-/// Greatest residual of a product at the check points, as part of the surface's residual and of the wanted error: it is negligible beside
+/// Greatest residual of a product at the check points, as part of the surface's residual and of the target error: it is negligible beside
 /// both.
 const PART: f64 = 0.1;
 

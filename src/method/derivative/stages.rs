@@ -207,7 +207,7 @@ impl Ladder {
         }
     }
 
-    /// Returns the pairs that are examined, and the exact derivatives of every characteristic if they are wanted.
+    /// Returns the pairs that are examined, and the exact derivatives of every characteristic if they are requested.
     fn derivatives(
         &self,
         problem: &Problem,

@@ -268,7 +268,7 @@ pub(in crate::method) struct Quadrature<'p> {
 }
 
 impl<'p> Quadrature<'p> {
-    /// Returns a design without points, except for the reference if it is wanted.
+    /// Returns a design without points, except for the reference if it is requested.
     pub(in crate::method) fn new(
         problem: &'p Problem,
         options: &Options,

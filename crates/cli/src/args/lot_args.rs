@@ -25,7 +25,7 @@ pub(crate) struct CompareLotArgs {
     #[arg(long, value_name = "N", value_parser = samples_or_none, allow_negative_numbers = true)]
     pub(crate) assumed_parts: Option<u64>,
 
-    /// Write the study with mean and sigma of every measured dimension, and with significant correlations; otherwise as it is
+    /// Write the study with mean and sigma of every measured dimension, and with significant correlations; nothing else changes
     #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
     pub(crate) update: Option<PathBuf>,
 
@@ -48,7 +48,7 @@ pub(crate) struct CompareLotArgs {
     #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
     pub(crate) pdf: Option<PathBuf>,
 
-    /// Write parts, assemblies, differences and groups as CSV files into DIR, which is made where it is missing
+    /// Write parts, assemblies, differences and groups as CSV files into DIR, which is created if missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(crate) csv: Option<PathBuf>,
 

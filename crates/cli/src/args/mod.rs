@@ -91,7 +91,7 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol sweep examples/connecting-rod/crank-angle.toml --over theta=-180:180:73 --svg band.svg"
     )]
     Sweep(SweepArgs),
-    /// The cheapest tolerances that keep what is required
+    /// The cheapest tolerances that keep the requirements
     ///
     /// Costs stand in [costs]; each characteristic says what it requires: a target_yield or a require. Method auto
     /// stands for full, and above twenty dimensions for six-n.
@@ -149,8 +149,8 @@ pub(super) enum Command {
     /// The workbench over a folder of studies, in a browser
     ///
     /// The page opens and saves studies of the folder, shows a file again when it changes, and runs external models. It is reached by the
-    /// address that is printed, from this machine alone. It reads and writes nothing outside the folder. A program that a study names starts
-    /// when the user asks for a result, and has the rights of the user.
+    /// address that is printed, from this machine alone. It reads and writes nothing outside the folder. A program that a study names
+    /// starts when the user requests a result, and has the rights of the user.
     #[command(after_help = "Examples:\n  sensitol serve\n  sensitol serve examples/external-python --port 8080")]
     Serve(ServeArgs),
     /// The examples of the documentation, to begin from
@@ -253,7 +253,7 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
     pub(super) pdf: Option<PathBuf>,
 
-    /// Write the tables of the report as CSV files into DIR, which is made where it is missing; several studies: into DIR/STUDY
+    /// Write the tables of the report as CSV files into DIR, which is created if missing; several studies: into DIR/STUDY
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(super) csv: Option<PathBuf>,
 
@@ -312,7 +312,7 @@ pub(super) struct SweepArgs {
     #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
     pub(super) pdf: Option<PathBuf>,
 
-    /// Write the table as sweep.csv into DIR, which is made where it is missing
+    /// Write the table as sweep.csv into DIR, which is created if missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(super) csv: Option<PathBuf>,
 
@@ -351,7 +351,7 @@ pub(super) struct AllocateArgs {
     #[arg(long, value_name = "COST", value_parser = positive, allow_negative_numbers = true)]
     pub(super) cost_limit: Option<f64>,
 
-    /// The Pareto front of cost against what is required, in N points
+    /// The Pareto front of cost against the requirements, in N points
     #[arg(long = "pareto", alias = "front", value_name = "N", value_parser = count, allow_negative_numbers = true)]
     pub(super) front: Option<usize>,
 
@@ -371,7 +371,7 @@ pub(super) struct AllocateArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     pub(super) threads: Option<u16>,
 
-    /// Write the study with the tolerances found, otherwise as it is
+    /// Write the study with the tolerances found; nothing else changes
     #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
     pub(super) write: Option<PathBuf>,
 
@@ -383,7 +383,7 @@ pub(super) struct AllocateArgs {
     #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT, hide_short_help = true)]
     pub(super) pdf: Option<PathBuf>,
 
-    /// Write tolerances, requirements and front as CSV files into DIR, which is made where it is missing
+    /// Write tolerances, requirements and front as CSV files into DIR, which is created if missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(super) csv: Option<PathBuf>,
 
@@ -492,7 +492,7 @@ pub(super) struct EvaluateArgs {
 }
 
 impl EvaluateArgs {
-    /// True if a report is asked for, and not the protocol.
+    /// True if a report is requested, and not the protocol.
     pub(super) fn reports(&self) -> bool {
         !self.at.is_empty() || self.output.json || self.output.output.is_some()
     }

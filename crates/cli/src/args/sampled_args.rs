@@ -103,7 +103,7 @@ pub(crate) struct SampleReportArgs {
     #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT, hide_short_help = true)]
     pub(crate) pdf: Option<PathBuf>,
 
-    /// Write estimates and histogram as CSV files into DIR, which is made where it is missing
+    /// Write estimates and histogram as CSV files into DIR, which is created if missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(crate) csv: Option<PathBuf>,
 
@@ -145,7 +145,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
     pub(crate) pdf: Option<PathBuf>,
 
-    /// Write the table as comparison.csv into DIR, which is made where it is missing
+    /// Write the table as comparison.csv into DIR, which is created if missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(crate) csv: Option<PathBuf>,
 

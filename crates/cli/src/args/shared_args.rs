@@ -37,15 +37,15 @@ pub(crate) struct HowArgs {
     #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
     pub(crate) accuracy: Option<f64>,
 
-    /// Wanted error of the skewness, for auto
+    /// Target error of the skewness, for auto
     #[arg(long, value_name = "E", value_parser = positive, hide_short_help = true)]
     pub(crate) accuracy_skewness: Option<f64>,
 
-    /// Wanted error of the kurtosis, for auto
+    /// Target error of the kurtosis, for auto
     #[arg(long, value_name = "E", value_parser = positive, hide_short_help = true)]
     pub(crate) accuracy_kurtosis: Option<f64>,
 
-    /// Wanted error of the yield, a share such as 1e-5, for auto
+    /// Target error of the yield, a share such as 1e-5, for auto
     #[arg(long, value_name = "E", value_parser = part, allow_negative_numbers = true, hide_short_help = true)]
     pub(crate) accuracy_yield: Option<f64>,
 

@@ -77,7 +77,7 @@ pub(crate) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         return Ok(Exit::Interrupted);
     }
     let incomplete = allocation.before.characteristics.iter().any(|one| one.moments.is_none());
-    // A confirmation that the user asked for and that fails decides the exit code.
+    // A confirmation that the user requested and that fails decides the exit code.
     let refutes = ["confirmation-misses", "joint-confirmation-misses"];
     let refuted = report.warnings.iter().any(|warning| refutes.contains(&warning.code));
     let exit = match allocation.status {

@@ -257,7 +257,7 @@ fn assembly(mobility: &Mobility) -> String {
     text
 }
 
-/// Joints with the freedoms that each takes, if everything is asked for.
+/// Joints with the freedoms that each takes, if everything is requested.
 fn joint_table(scene: &AssemblyScene, look: Look) -> String {
     if !look.verbose {
         return String::new();

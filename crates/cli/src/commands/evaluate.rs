@@ -57,7 +57,7 @@ struct Ready<'a> {
     units: Vec<Option<&'a str>>,
     nominal: Vec<f64>,
     characteristics: Vec<&'a str>,
-    /// Unit of the translations, if poses are asked for.
+    /// Unit of the translations, if poses are requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     length_unit: Option<&'a str>,
 }
@@ -80,14 +80,14 @@ struct Refusal {
     error: String,
 }
 
-/// Study with the names and units that one engine asked for.
+/// Study with the names and units that one engine requested.
 struct Session {
     problem: Problem,
     /// Point with nominal values and constants, into which the values of a request are written.
     start: Vec<f64>,
     /// Index of the dimension of every value in a request. None for an optional name that the study does not have.
     columns: Vec<Option<usize>>,
-    /// Poses of the parts, if they are asked for.
+    /// Poses of the parts, if they are requested.
     poses: Option<AssemblyPoses>,
     /// Poses at the nominal dimensions.
     parts: Vec<PartPose>,

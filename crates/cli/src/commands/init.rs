@@ -87,7 +87,7 @@ fn own_study(asked: &InitArgs) -> (&'static str, &'static [&'static str]) {
 /// Files of a kind with their texts, and the commands to try next.
 type KindFiles = (Vec<(PathBuf, String)>, &'static [&'static str]);
 
-/// Returns the files that the options ask for.
+/// Returns the files that the options request.
 fn written(asked: &InitArgs, path: &Path) -> Result<KindFiles, Failure> {
     // A study that reads a file names it without its folder.
     let beside = |extension: &str| {

@@ -82,7 +82,7 @@ pub(super) struct Slot {
 
 #[derive(Default)]
 pub(super) enum State {
-    /// No child, and none is wanted yet.
+    /// No child, and none is needed yet.
     #[default]
     Empty,
     /// No child may start before this moment.

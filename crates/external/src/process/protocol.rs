@@ -20,7 +20,7 @@ pub(super) struct Hello {
     pub(super) nominal: Vec<f64>,
     pub(super) constants: serde_json::Map<String, serde_json::Value>,
     pub(super) characteristics: Vec<String>,
-    /// Dimensions and constants that formulas use too, so that the child need not know them.
+    /// Dimensions and constants that formulas use too, so that the child does not use them.
     pub(super) optional: Vec<String>,
     /// Units of the characteristics. They are not sent, only compared with those of the child.
     #[serde(skip)]

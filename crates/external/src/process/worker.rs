@@ -126,7 +126,7 @@ impl Worker {
         self.cancel(back);
     }
 
-    /// Sends a message that these points are no longer wanted.
+    /// Sends a message that these points are no longer needed.
     pub(super) fn cancel(&mut self, points: impl IntoIterator<Item = Sent>) {
         let points: Vec<Sent> = points.into_iter().collect();
         if points.is_empty() {

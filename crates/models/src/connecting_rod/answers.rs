@@ -10,7 +10,7 @@ use super::section::{Root, Section, shank};
 use super::{DEGREE, LANES, Rows, input, output};
 use sensitol::assembly::{EvaluationError, Responses};
 
-/// Fills the outputs that are asked, with their columns, for some rows from the `first` on.
+/// Fills the requested outputs, with their columns, for some rows from the `first` on.
 pub(super) fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Responses) {
     let maxima = Maxima::of(rows, asked);
     let answers = Answers { rows, maxima, across: Alone::of(rows, Speed::Given, Centre::Given, Effect::Normal) };
@@ -57,7 +57,7 @@ const NO_HEIGHT: &str = "no height of the section brings the stress to a fifth o
 /// The speed of the outputs that are not at the speed that is given.
 const FIRED: Speed = Speed::Rpm(3000.0);
 
-/// Maxima over the crank angle in every row; NaN where no output that is asked needs them.
+/// Maxima over the crank angle in every row; NaN where no requested output needs them.
 struct Maxima {
     /// Maxima at 3000 rpm with gas.
     compression: [Peak; LANES],
@@ -122,7 +122,7 @@ fn at_speed(rows: &Rows) -> Root<'_> {
     Root { rows, speed: Speed::Given, webs: [1.0; LANES], at_cut: true }
 }
 
-/// Rows with the outputs that are asked of them.
+/// Rows with the requested outputs.
 #[derive(Clone, Copy)]
 struct MaximaSearch<'r> {
     rows: &'r Rows,
@@ -130,7 +130,7 @@ struct MaximaSearch<'r> {
 }
 
 impl MaximaSearch<'_> {
-    /// Runs a search if any of these outputs is asked.
+    /// Runs a search if any of these outputs is requested.
     fn found(self, outputs: &[usize], search: impl FnOnce() -> [Peak; LANES]) -> [Peak; LANES] {
         if self.asked.iter().any(|(output, _)| outputs.contains(output)) {
             search()

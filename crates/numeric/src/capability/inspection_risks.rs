@@ -20,7 +20,7 @@ pub struct EstimatedShare {
 pub struct InspectionRisks {
     /// Standard deviation of the gauge.
     pub gauge: f64,
-    /// Amount by which the limits are tightened. None if no guard reaches the wanted rate.
+    /// Amount by which the limits are tightened. None if no guard reaches the requested rate.
     pub guard: Option<f64>,
     /// Tightened limits.
     pub acceptance: [Option<f64>; 2],

@@ -33,7 +33,7 @@ use sensitol_numeric::correlation::Pair;
 use sensitol_numeric::pearson::Pearson;
 use sensitol_numeric::sampling::one_error;
 
-/// Contributions that a terminal shows unless all are asked for.
+/// Contributions that a terminal shows unless all are requested.
 const CONTRIBUTIONS: usize = 30;
 /// Dimensions that are named, rather than counted, in a sentence.
 const NAMED: usize = 8;

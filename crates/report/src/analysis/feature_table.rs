@@ -17,7 +17,7 @@ struct FeatureRow {
 }
 
 impl Report {
-    /// Adds contributions by feature to a section, with the dimensions of each if everything is asked for.
+    /// Adds contributions by feature to a section, with the dimensions of each if everything is requested.
     pub(crate) fn features(&self, one: &CharacteristicAnalysis, section: &mut Section) {
         let Some(assembly) = &self.assembly else { return };
         let Some(shares) = owner_shares(assembly, one) else { return };

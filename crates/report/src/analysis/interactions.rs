@@ -11,7 +11,7 @@ use sensitol::analysis::{
     CharacteristicAnalysis, DerivativeOrigin, EstimatedShare, IndexSource, Interaction, SobolIndices, VerificationKind,
 };
 
-/// Most interactions on a terminal unless all are asked for.
+/// Most interactions on a terminal unless all are requested.
 pub(crate) const SHOWN: usize = 2;
 /// Most interactions on a page.
 pub(crate) const SHOWN_ON_PAGE: usize = 24;

@@ -51,7 +51,7 @@ pub(crate) trait CharacteristicStatistics {
     /// Adds the figures with their errors, then the intervals, each in a row of its own.
     fn statistics(&self, section: &mut Section);
 
-    /// Table of the intervals. A terminal leaves out a linear worst case beside a proven one unless everything is asked for.
+    /// Table of the intervals. A terminal leaves out a linear worst case beside a proven one unless everything is requested.
     fn intervals(&self) -> DataTable;
 
     /// True if the contributions come from points of the model, because the surface is not trusted.

@@ -50,7 +50,7 @@ pub(crate) fn decision(one: &CharacteristicAnalysis, run: &RunSummary) -> Option
     Some(format!("{points} plain points of the model would decide the target if this yield is right{time}"))
 }
 
-/// Time in a unit that people use.
+/// Time in a unit that readers use.
 fn time(seconds: f64) -> String {
     match seconds {
         s if s < 120.0 => format!("{s:.0} s"),

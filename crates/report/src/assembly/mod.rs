@@ -11,6 +11,6 @@ use sensitol_study::{AssemblyScene, SceneDeviation};
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ReportedAssembly {
     pub(crate) scene: AssemblyScene,
-    /// Displacements at one sigma of each characteristic; None if they are unknown. Empty if nobody asked for them.
+    /// Displacements at one sigma of each characteristic; None if they are unknown. Empty unless requested.
     pub(crate) deviations: Vec<Option<SceneDeviation>>,
 }

@@ -71,7 +71,7 @@ pub struct Paragraph {
     pub flow: Flow,
 }
 
-/// Words after a title, cut to a few lines unless everything is asked for.
+/// Words after a title, cut to a few lines unless everything is requested.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct List {
     /// Title before the words.
@@ -111,7 +111,7 @@ pub enum Element {
     Paragraph(Paragraph),
     /// Additions on pages for which a terminal has no space.
     Aside(Aside),
-    /// Details for pages, and for a terminal if everything is asked for.
+    /// Details for pages, and for a terminal if everything is requested.
     Detail(Vec<Element>),
     /// Text of a terminal in place of the details.
     Brief(Vec<Element>),
@@ -221,12 +221,12 @@ pub trait Blocks {
         self.blocks().push(Element::Aside(Aside { title, blocks }));
     }
 
-    /// Adds blocks for pages, and for a terminal if everything is asked for.
+    /// Adds blocks for pages, and for a terminal if everything is requested.
     fn detail(&mut self, blocks: Vec<Element>) {
         self.blocks().push(Element::Detail(blocks));
     }
 
-    /// Adds blocks for a terminal if not everything is asked for.
+    /// Adds blocks for a terminal if not everything is requested.
     fn brief(&mut self, blocks: Vec<Element>) {
         self.blocks().push(Element::Brief(blocks));
     }

@@ -1,4 +1,4 @@
-//! Numbers and names for people: rounded to the digits that carry information, with signs for unknown and for negligible values.
+//! Numbers and names for readers: rounded to the digits that carry information, with signs for unknown and for negligible values.
 
 use sensitol_numeric::names::{clean, shortened_to};
 

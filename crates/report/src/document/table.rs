@@ -59,7 +59,7 @@ pub struct DataTable {
     pub rows: Vec<Vec<Cell>>,
     /// Indices of the rows that readers see, in their order. CSV has all rows.
     pub view: Vec<usize>,
-    /// Most rows that a terminal shows unless everything is asked for, and most rows of a page.
+    /// Most rows that a terminal shows unless everything is requested, and most rows of a page.
     pub most: [usize; 2],
     /// Hint that a terminal prints if it does not show all rows.
     pub rest: String,
@@ -154,7 +154,7 @@ impl DataTable {
         self
     }
 
-    /// Sets the most rows of a terminal (unless all are asked for) and of a page, and the terminal's hint at the rest.
+    /// Sets the most rows of a terminal (unless all are requested) and of a page, and the terminal's hint at the rest.
     pub fn at_most(mut self, most: [usize; 2], rest: String) -> Self {
         (self.most, self.rest) = (most, rest);
         self
@@ -189,7 +189,7 @@ impl DataTable {
         self
     }
 
-    /// Returns the indices of the wanted columns.
+    /// Returns the indices of the requested columns.
     pub fn places(&self, wanted: impl Fn(&Column) -> bool) -> Vec<usize> {
         self.columns.iter().enumerate().filter(|(_, column)| wanted(column)).map(|(place, _)| place).collect()
     }

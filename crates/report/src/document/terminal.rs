@@ -154,7 +154,7 @@ impl Page {
         }
     }
 
-    /// Returns the letters of a line, replaced by ASCII if the style asks for it.
+    /// Returns the letters of a line, replaced by ASCII if the style requests it.
     fn letters(&self, line: &Line) -> Vec<Letter> {
         let letters = |span: &crate::document::Span| {
             let text = clean(&span.text);

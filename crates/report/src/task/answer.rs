@@ -1,4 +1,4 @@
-//! Report of a run, in the forms that a task can ask for.
+//! Report of a run, in the forms that a task can request.
 
 use serde::Serialize;
 

@@ -62,7 +62,7 @@ pub enum Asked {
         /// Values of the parameter.
         values: Vec<f64>,
     },
-    /// The cheapest tolerances that keep what is required.
+    /// The cheapest tolerances that keep the requirements.
     Allocate {
         /// Dimensions whose nominal values may move.
         #[serde(default)]
@@ -70,7 +70,7 @@ pub enum Asked {
         /// Least and greatest of these values.
         #[serde(default)]
         nominal_bounds: Vec<(String, [f64; 2])>,
-        /// Points of the front of cost against what is required.
+        /// Points of the front of cost against the requirements.
         front: Option<usize>,
         /// Points of the model that confirm what was found.
         confirm: Option<u64>,

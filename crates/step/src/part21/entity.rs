@@ -1,4 +1,4 @@
-//! View of an entity, whose arguments are parsed when they are asked for.
+//! View of an entity, whose arguments are parsed when they are requested.
 
 use super::error::Part21Error;
 use super::scan::{Cursor, line};

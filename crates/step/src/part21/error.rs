@@ -29,7 +29,7 @@ pub enum Part21Fault {
     /// An end in the middle of the text.
     #[error("the file ends here, before END-ISO-10303-21: it was cut off, copy or export it again")]
     CutOff,
-    /// Text that is no entity.
+    /// Text that is not an entity.
     #[error("expected {expected}, found `{found}`: the file is damaged, export it again")]
     Syntax {
         /// Text that the syntax needs.

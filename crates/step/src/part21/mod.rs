@@ -1,7 +1,7 @@
 //! Reader of Part 21 files (ISO 10303-21), which has no notion of tolerances.
 //!
-//! [`EntityTable::read`] scans the text once and keeps the place of every entity. [`Entity`] parses the arguments of one entity when
-//! they are asked for. So a large file costs one pass and 16 bytes an entity.
+//! [`EntityTable::read`] scans the text once and keeps the place of every entity. [`Entity`] parses the arguments of one entity when they
+//! are requested. So a large file costs one pass and 16 bytes an entity.
 
 mod entity;
 mod error;

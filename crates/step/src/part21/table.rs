@@ -24,7 +24,7 @@ struct Record {
 /// Entities of a Part 21 file, by their numbers and by their types.
 ///
 /// # Cost
-/// One pass over the text and 16 bytes an entity. Arguments are parsed when they are asked for.
+/// One pass over the text and 16 bytes an entity. Arguments are parsed when they are requested.
 #[derive(Debug)]
 pub struct EntityTable<'a> {
     bytes: &'a [u8],

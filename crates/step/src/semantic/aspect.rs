@@ -55,7 +55,7 @@ pub(super) struct AspectItems {
     pub(super) faces: Vec<u64>,
     /// True if the aspect names a solid or the whole part.
     pub(super) whole: bool,
-    /// Number and types of an item that is no face. None if there is no other item.
+    /// Number and types of an item that is not a face. None if there is no other item.
     pub(super) other: Option<(u64, String)>,
 }
 

@@ -37,7 +37,7 @@ pub struct StepPart {
     pub dimensions: Vec<StepDimension>,
     /// Datums.
     pub datums: Vec<StepDatum>,
-    /// Faces that tolerances, dimensions and datums name, and those that were asked for.
+    /// Faces that tolerances, dimensions and datums name, and those that were requested.
     pub faces: BTreeMap<u64, StepFace>,
 }
 

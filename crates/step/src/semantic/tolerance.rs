@@ -143,7 +143,7 @@ pub struct GeometricTolerance {
     pub faces: Vec<u64>,
     /// True if it controls the whole part.
     pub whole: bool,
-    /// Number and types of a controlled item that is no face.
+    /// Number and types of a controlled item that is not a face.
     pub other: Option<(u64, String)>,
     /// Upper segment of a composite frame of which this is the lower one.
     pub upper: Option<u64>,

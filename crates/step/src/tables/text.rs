@@ -73,7 +73,7 @@ impl UniqueNames {
         Self { taken: taken.clone(), next: std::collections::HashMap::new() }
     }
 
-    /// The wanted name, or with a number if it is taken.
+    /// The requested name, or with a number if it is taken.
     pub(super) fn take(&mut self, wanted: &str) -> String {
         if self.taken.insert(wanted.to_owned()) {
             return wanted.to_owned();

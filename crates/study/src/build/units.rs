@@ -69,7 +69,7 @@ impl Units {
             of_unknowns.filter_map(|(name, one)| Some((name.get_ref().as_str(), one.get_ref().unit.as_deref()?))),
         );
         match model {
-            // With conversion the name of an output means the characteristic everywhere, in the unit that the study asks for.
+            // With conversion the name of an output means the characteristic everywhere, in the unit that the study requests.
             Some(model) => texts.extend(model.outputs.iter().map(|output| {
                 let asked = file.characteristics.0.iter().find(|(name, _)| name.get_ref() == output.name);
                 let asked = asked.and_then(|(_, one)| one.get_ref().unit.as_deref()).filter(|_| mode == Mode::Convert);

@@ -22,14 +22,14 @@ pub(crate) struct AnalysisEntry {
     /// The method.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::methods(), "default" = Options::default().method.name())))]
     pub(crate) method: Option<Spanned<String>>,
-    /// Wanted relative error of sigma, for auto.
+    /// Target relative error of sigma, for auto.
     #[cfg_attr(feature = "schema", schemars(extend("default" = ACCURACY)))]
     pub(crate) accuracy: Option<Spanned<f64>>,
-    /// Wanted error of the skewness, for auto.
+    /// Target error of the skewness, for auto.
     pub(crate) accuracy_skewness: Option<Spanned<f64>>,
-    /// Wanted error of the kurtosis, for auto.
+    /// Target error of the kurtosis, for auto.
     pub(crate) accuracy_kurtosis: Option<Spanned<f64>>,
-    /// Wanted error of the yield, a share such as 1e-5, for auto.
+    /// Target error of the yield, a share such as 1e-5, for auto.
     pub(crate) accuracy_yield: Option<Spanned<f64>>,
     /// Most evaluations that may be spent; a method that needs more is an error, auto stays below. Without it a method that needs more
     /// than 1000000 is an error.

@@ -33,7 +33,7 @@ pub enum ImportProblem {
     /// The table has no column of the requested name.
     #[error("there is no column `{header}`")]
     NoColumn {
-        /// Header that was asked for.
+        /// Header that was requested.
         header: String,
         /// Headers of the table.
         known: Vec<String>,
@@ -181,7 +181,7 @@ pub enum ImportProblem {
         /// The standard deviation.
         value: f64,
     },
-    /// A number of equal parts that is no whole number from 1 to 1000.
+    /// A number of equal parts that is not a whole number from 1 to 1000.
     #[error("{value} is not a number of parts")]
     NoQuantity {
         /// The number.

@@ -49,7 +49,7 @@ pub enum StepImportFault {
     /// The study to which parts are added cannot be read.
     #[error("{0}")]
     Target(String),
-    /// The written text is no study.
+    /// The written text is not a study.
     #[error("the written study cannot be read: {0}")]
     Written(Box<StudyError>),
 }

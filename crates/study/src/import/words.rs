@@ -97,7 +97,7 @@ const LIMITS: [&str; 13] = [
     "specification",
     "spezifikation",
 ];
-/// Words that stand before limits only, so that a row with one of them as its name is no dimension.
+/// Words that stand before limits only, so that a row with one of them as its name is not a dimension.
 const NO_DIMENSION: [&str; 6] = ["limits", "limit", "grenzen", "grenzwerte", "grenzmasse", "sollbereich"];
 
 /// Sign of a direction in a cell. Returns None for another word.

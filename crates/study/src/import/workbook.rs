@@ -35,7 +35,7 @@ pub enum WorkbookFault {
     /// The workbook has no sheet of this name.
     #[error("there is no sheet `{name}`")]
     NoSheet {
-        /// Name of the sheet that was asked for.
+        /// Name of the sheet that was requested.
         name: String,
         /// Names of the sheets.
         known: Vec<String>,
@@ -77,7 +77,7 @@ pub fn is_workbook(bytes: &[u8]) -> bool {
     bytes.starts_with(ARCHIVE) || bytes.starts_with(COMPOUND)
 }
 
-/// A sheet with its name: the one that is asked for, or else the first visible one that `fits`, or else the first visible one.
+/// A sheet with its name: the one that is requested, or else the first visible one that `fits`, or else the first visible one.
 pub fn workbook(
     bytes: Vec<u8>,
     wanted: Option<&str>,

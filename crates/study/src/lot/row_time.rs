@@ -4,7 +4,7 @@
 const DAY: f64 = 86400.0;
 /// Date from which workbooks count days.
 const WORKBOOK_ORIGIN: [i64; 3] = [1899, 12, 30];
-/// Days of each month of a year that is no leap year.
+/// Days of each month of a year that is not a leap year.
 const MONTHS: [i64; 12] = [31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
 
 /// Time of one row.

@@ -1,8 +1,8 @@
 //! `sensitol serve`: the workbench over a folder of studies, with the engine of this program.
 //!
-//! The page is that of `sensitol workbench`, or one without WebAssembly if none was built. It opens and saves studies of the folder, follows changes of files, and can run external
-//! models. Only requests with the token are answered, and no file outside the folder is read or written. A program that a study names is
-//! not confined, and starts only when the user asks for a result.
+//! The page is that of `sensitol workbench`, or one without WebAssembly if none was built. It opens and saves studies of the folder,
+//! follows changes of files, and can run external models. Only requests with the token are answered, and no file outside the folder is read
+//! or written. A program that a study names is not confined, and starts only when the user requests a result.
 
 mod answer;
 mod connection;

@@ -32,8 +32,8 @@ pub(in crate::commands::serve) fn keys(folder: &Folder, query: &Query, told: &st
     }
 }
 
-/// Runs a task and reports progress to the page. The run ends if the page is gone. A program starts only if the request says that the
-/// user asked for it.
+/// Runs a task and reports progress to the page. The run ends if the page is gone. A program starts only if the request says that the user
+/// requested it.
 pub(in crate::commands::serve) fn run(folder: &Folder, query: &Query, told: &str, connection: &Connection) {
     let (task, path) = match asked(folder, query, told) {
         Ok(asked) => asked,

@@ -91,7 +91,7 @@ impl Pool {
         }
     }
 
-    /// Settles a row of the batch, or sends it again where the program asks for that.
+    /// Settles a row of the batch, or sends it again where the program requests that.
     fn settle_answer(
         &mut self,
         index: usize,

@@ -92,7 +92,7 @@ impl<'t> Values<'t> {
         Ok(self.asked(formula, tree, key, measures))
     }
 
-    /// A formula whose value is asked for.
+    /// A formula whose value is requested.
     fn asked(&mut self, formula: String, tree: &Tree, key: &str, measures: Measures) -> Quantity {
         let number = self.formulas.len() as f64;
         let value = Tree { span: tree.span.clone(), value: Value::Text(formula.clone()) };

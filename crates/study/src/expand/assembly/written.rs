@@ -10,7 +10,7 @@ use sensitol::assembly::formula::Formula;
 const PLACES: [&str; 4] = ["plane", "axis", "point", "frame"];
 /// Keys of directions.
 const DIRECTIONS: [&str; 4] = ["normal", "along", "z", "x"];
-/// Keys whose text is no number.
+/// Keys whose text is not a number.
 const WORDS: [&str; 3] = ["datums", "distribution", "at"];
 /// Keys of numbers in a zone that is a table.
 const OF_ZONE: [&str; 3] = ["zone", "hole", "pin"];
