@@ -198,7 +198,7 @@ pub struct Ran {
     pub errors: Vec<Errors>,
     /// Verdict of the method for every characteristic. None if it has no target yield.
     pub verdicts: Vec<Option<Verdict>>,
-    /// For every characteristic, true if no other method has a smaller error with as many evaluations or fewer.
+    /// True for each characteristic if no other method has a smaller error with as many evaluations or fewer.
     pub pareto: Vec<bool>,
 }
 

@@ -145,7 +145,7 @@ impl Evaluated {
     }
 }
 
-/// Answers of batches that were asked side by side, each with its ledger.
+/// Answers of batches that were evaluated side by side, each with its ledger.
 type Answered = Vec<(Responses, Ledger)>;
 
 /// Model and plan that evaluate the points of a stage.

@@ -173,19 +173,19 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     Ok(Probe { adapter, run, start, alone, together, checks, characteristics })
 }
 
-/// Answers of the model to the points of a probe, in the order in which they are asked.
+/// Answers of the model to the points of a probe, in the order of their evaluation.
 struct Passes {
     /// At the nominal dimensions.
     first: Responses,
     /// There again.
     second: Responses,
     scattered: Answered,
-    /// On walks to the scattered points, in another order.
+    /// Answers on walks to the scattered points, in another order.
     walked: Responses,
     line: Answered,
-    /// At the nominal dimensions, after all of these.
+    /// Answer at the nominal dimensions, after all of these.
     after: Responses,
-    /// At the nominal dimensions, after points where the model may fail.
+    /// Answer at the nominal dimensions, after points at which the model may fail.
     failing: Responses,
     steps: Answered,
 }
@@ -203,7 +203,7 @@ impl Passes {
         (0..characteristics).map(|c| values(c).and_then(|values| level(&values))).collect()
     }
 
-    /// The values of a characteristic at the steps of one sigma, where it has any.
+    /// The values of a characteristic at the steps of one sigma, if it has any.
     fn stepped(&self, c: usize) -> Vec<f64> {
         (0..self.steps.rows.len()).filter_map(|row| self.steps.out.value(row, c)).collect()
     }
@@ -220,7 +220,7 @@ struct Probing<'a> {
 }
 
 impl<'a> Probing<'a> {
-    /// A probe of a problem's model of which nothing has been asked yet.
+    /// A probe of a problem's model before the first evaluation.
     fn new(problem: &'a Problem, run: &'a Run<'a>) -> Self {
         Self {
             evaluator: Evaluator::new(problem, run),

@@ -42,8 +42,8 @@ fn misses_its_limits(analysis: &CharacteristicAnalysis) -> bool {
     below || above
 }
 
-/// Dimension that has nearly all of the variance with a tolerance far wider than all others in its unit, with its share and the factor to
-/// the next tolerance.
+/// Dimension with nearly all of the variance and by far the widest tolerance in its unit; with its share and the factor to the next
+/// tolerance.
 fn dominant(problem: &Problem, analysis: &CharacteristicAnalysis) -> Option<(usize, f64, f64)> {
     let share = |d: usize| {
         let sensitivity = &analysis.sensitivities[d];

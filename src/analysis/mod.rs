@@ -213,8 +213,7 @@ struct Checked {
     ledger: Ledger,
 }
 
-/// Compares the figures of a method with the model: extremes, points in place of a surface that misses its accuracy, jumps, verification,
-/// and failures that the journal holds.
+/// Compares the figures of a method with the model: extremes, sampled points, jumps, verification, and failures in the journal.
 fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>) -> Checked {
     let seed = options.seed.unwrap_or(Options::SEED);
     let method = outcome.evaluated.ledger.clone();

@@ -312,7 +312,7 @@ fn long_tails(problem: &Problem, outcome: &Outcome, analysis: &CharacteristicAna
     outcome.plan.varying().iter().filter_map(warning).collect()
 }
 
-/// Warning of an atom at 0, as of a minimum distance: several points at which a characteristic is exactly 0, and others at which it is not.
+/// Warning of an atom at 0, as of a minimum distance: several points are exactly 0, and others are not.
 fn atom(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     let known = &outcome.evaluated.known;
     let points = known.values(c).filter(|&value| value == 0.0).count();

@@ -276,7 +276,7 @@ impl AssemblyFunction for Adjusted {
         run.finished(&rows, out);
     }
 
-    /// Returns none for an output that depends on a choice: its slope between two choices says nothing about the whole band.
+    /// Returns none for an output that depends on a choice: its slope between two choices does not hold over the whole band.
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         let found = self.function.derivatives(outputs, directions).into_iter().zip(outputs);
         found.map(|(found, &output)| found.filter(|_| !self.chosen[output])).collect()

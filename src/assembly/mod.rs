@@ -196,8 +196,8 @@ pub trait AssemblyFunction: Send + Sync {
         0
     }
 
-    /// Returns the greatest number of evaluations of the model for one point of these outputs: more than 1 if an input is chosen from a
-    /// stock, or if an output is an extreme over a motion. This is not an evaluation.
+    /// Returns the greatest number of evaluations for one point: more than 1 with a choice from stock or an extreme over a motion. This is
+    /// not an evaluation.
     fn evaluations_per_point(&self, outputs: &[usize]) -> usize {
         let _ = outputs;
         1

@@ -147,7 +147,7 @@ pub enum ProcessFault {
         /// Answer after steps along one dimension after the other.
         third: Option<f64>,
     },
-    /// The process requested another attempt at the point every time, so that it says nothing about the model. It is not kept in a journal.
+    /// The process requested another attempt at the point every time, which is not an answer of the model. It is not kept in a journal.
     #[error("{}", clipped(message))]
     Unable {
         /// Reason of the last attempt in the model's own words.

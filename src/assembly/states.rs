@@ -16,9 +16,9 @@ pub(crate) struct State {
     pub(crate) name: String,
     pub(crate) function: Arc<dyn AssemblyFunction>,
     pub(crate) moved: Vec<f64>,
-    /// Outputs that are asked of the function.
+    /// Requested outputs of the function.
     pub(crate) outputs: Vec<usize>,
-    /// Points for which a costly function was asked, by the bits of the shifted point.
+    /// Points at which a costly function was evaluated, by the bits of the shifted point.
     asked: Mutex<HashMap<Vec<u64>, Vec<f64>>>,
 }
 
@@ -82,7 +82,7 @@ impl State {
         }
     }
 
-    /// Returns the point of the first state for which this point was asked.
+    /// Returns the point of the first state at which this point was evaluated.
     fn asked_for(&self, point: &[f64]) -> Vec<f64> {
         let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
         asked.get(&bits(point)).cloned().unwrap_or_else(|| point.to_vec())

@@ -91,8 +91,8 @@ pub(crate) fn carried_by(points: f64) -> f64 {
     1.0 + FEW / points.sqrt()
 }
 
-/// Factor on a standard error from `replicates` randomisations that makes three of it as rare as three of a normal distribution: the
-/// quantile of Student's distribution divided by the normal one, 1.2 for 16 randomisations.
+/// Factor on a standard error from `replicates` randomisations: the quantile of Student's distribution divided by the normal one, 1.2 for
+/// 16 randomisations.
 pub(crate) fn student(replicates: usize) -> f64 {
     let freedom = (replicates.max(2) - 1) as f64;
     student_quantile(THREE_SIGMAS, freedom) / 3.0

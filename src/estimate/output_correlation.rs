@@ -106,8 +106,8 @@ pub(crate) const fn most_points_together(characteristics: usize) -> usize {
     characteristics * ROWS * REPLICATES
 }
 
-/// Mean number of broken characteristics beyond the first, over the points at which all of these have a value: the rejects that are counted
-/// more than once if reject rates are added. Returns None if no point has all values.
+/// Mean number of broken characteristics beyond the first, over the points with all values: rejects that a sum of reject rates counts
+/// again. Returns None if no point has all values.
 ///
 /// It uses the points of [`output_correlations`], with errors of the same kind. If no point is counted twice, the error is that of zero
 /// hits among all points.

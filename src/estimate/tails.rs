@@ -15,8 +15,7 @@ const TO: f64 = 1e-6;
 /// Fewest points at or beyond the last value: a share of fewer is meaningless.
 const FEWEST: usize = 4;
 
-/// Tails of a sample, on every side that has a limit: from 10 % to 1 ppm, or to the share of the last few points, in even steps of its
-/// logarithm.
+/// Tails of a sample on every side with a limit: from 10 % to 1 ppm or the last few points, in even steps of the logarithm.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SampleTails {

@@ -35,8 +35,7 @@ pub(crate) fn most_points(inputs: usize) -> usize {
     EVALUATIONS.max(REPLICATES * FEWEST * (inputs + 2))
 }
 
-/// Shares of the variance by a sampled model: the first-order and the total share of every dimension on which a characteristic depends, by
-/// exchanging inputs of the model itself.
+/// Sobol' indices by a sampled model: first-order and total share of every dimension, by exchanging inputs of the model.
 ///
 /// Returns None with correlated dimensions, whose shares add up differently, with more than 256 dimensions, and if nothing varies.
 /// Evaluations: 65 536, for more than 126 inputs 512 for each. Accuracy: 311 of 312 shares of six functions with closed forms lay within

@@ -1,4 +1,4 @@
-//! Questions to the model: the only place that asks it, with the ledger of their cost.
+//! Evaluations of the model: the only place that makes them, with the ledger of their cost.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -40,7 +40,7 @@ impl Ledger {
         self.non_repeatable.extend(later.non_repeatable);
     }
 
-    /// Ledger of questions that were asked side by side, as one batch.
+    /// Ledger of batches that were evaluated side by side, as one batch.
     pub fn of_batch(parts: impl IntoIterator<Item = Self>) -> Self {
         let mut batch = Self::default();
         parts.into_iter().for_each(|part| batch.add(part));
@@ -128,7 +128,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Problem whose model is asked.
+    /// Problem whose model is evaluated.
     pub fn problem(&self) -> &'a Problem {
         self.problem
     }
@@ -226,7 +226,7 @@ mod tests {
         Points::from_rows(&a.iter().map(|&a| [a]).collect::<Vec<_>>())
     }
 
-    /// Function with two outputs that leaves open what it is asked after its first point, except for one output of the second.
+    /// Function with two outputs that answers its first point and one output of the second, and leaves the rest open.
     struct Interrupted(Signature);
 
     impl AssemblyFunction for Interrupted {

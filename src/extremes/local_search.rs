@@ -99,16 +99,14 @@ impl<'r> Climb<'r> {
         Some((at_j, at_k, point))
     }
 
-    /// Points on the lines through `x`: two for a coordinate at a bound, up to four for an interior one, and one for
-    /// each pair of interior coordinates.
+    /// Points on the lines through `x`: two for a coordinate at a bound, up to four for an interior one, one for a pair.
     pub(super) fn samples(&self) -> Vec<Vec<f64>> {
         let lines = (0..self.x.len()).flat_map(|d| self.line(d).into_iter().map(move |x| self.with(d, x)));
         let pairs = self.pairs().into_iter().filter_map(|(j, k)| Some(self.pair(j, k)?.2));
         lines.chain(pairs).collect()
     }
 
-    /// A few promising points from the samples: every coordinate at the lowest point of a curve through its line, all
-    /// at once, some at once, and one alone.
+    /// Promising points from the samples: coordinates at the lowest points of curves through their lines, all, some or one at once.
     pub(super) fn candidates(&self, value: &impl Fn(&[f64]) -> Option<f64>) -> Vec<Vec<f64>> {
         let known: Vec<Vec<(f64, f64)>> = (0..self.x.len())
             .map(|d| self.line(d).into_iter().filter_map(|x| Some((x, value(&self.with(d, x))?))).collect())

@@ -146,7 +146,7 @@ pub enum Place {
     Lower,
     /// Upper end of the band.
     Upper,
-    /// Between the two ends.
+    /// Values between the two ends.
     Interior,
 }
 
@@ -245,7 +245,7 @@ fn go_on(answers: &mut Answers<'_>, tasks: &[Task], asked: &mut [usize], mut cli
     }
 }
 
-/// Evaluates the points that each task wants. Counts for each task the points that were not known before.
+/// Evaluates the points that each task needs. Counts for each task the points that were not known before.
 fn ask(answers: &mut Answers<'_>, tasks: &[Task], asked: &mut [usize], wanted: impl Fn(usize) -> Vec<Vec<f64>>) {
     let mut points = Vec::new();
     for (t, task) in tasks.iter().enumerate() {

@@ -110,14 +110,14 @@ pub enum LotVerdict {
         /// Dimension with the largest part in the difference.
         dimension: Option<String>,
     },
-    /// The assemblies differ from the study, and the measured parts are too few to tell whether they do: they agree with both.
+    /// The assemblies differ from the study. The measured parts are too few for a decision: they agree with both.
     TooFewParts {
         /// True for the mean.
         mean: bool,
         /// True for the sigma.
         sigma: bool,
     },
-    /// The assemblies differ from what their parts predict: the model is wrong, or a dimension is missing.
+    /// The assemblies differ from the prediction of their parts: the model is wrong, or a dimension is missing.
     Unexplained {
         /// True if the mean differs.
         mean: bool,

@@ -46,8 +46,7 @@ pub struct AutoAccount {
     pub checked: Vec<Option<SurrogateCheck>>,
     /// Scatter of answers next to the means, for every characteristic.
     pub noise: Vec<Option<f64>>,
-    /// Difference of model and surrogate three sigma out along the steepest line, in sigmas; infinite if the model has no value there, None
-    /// if the tails were not examined.
+    /// Difference of model and surrogate at three sigma along the steepest line, in sigmas; infinite without a value, None if not examined.
     pub tails: Vec<Option<f64>>,
     /// Value of `tails` without the part that a parabola explains which the check points have shown.
     pub(crate) beyond: Vec<Option<f64>>,

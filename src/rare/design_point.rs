@@ -180,8 +180,8 @@ impl Place {
     }
 }
 
-/// Points on the limit to start from: on the steepest way, on the axes of the surrogate's greatest rise, and on the
-/// diagonals of the strongest interactions.
+/// Starting points on the limit: on the steepest way, the axes of the surrogate's greatest rise, and the diagonals of the strongest
+/// interactions.
 fn starts(target: &Target<'_>, gradient: &[f64]) -> Vec<Vec<f64>> {
     /// Steps of a quarter sigma to which a way is followed.
     const REACH: usize = 40;

@@ -11,7 +11,7 @@ const MANY: f64 = 30.0;
 const HEAVY: f64 = 3.0;
 /// The 97.5 % quantile of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
-/// Mean number of hits of which none is seen with a probability of 2.5 %: `-ln 0.025`.
+/// Mean number of hits for which a sample has none with a probability of 2.5 %: `-ln 0.025`.
 const UNSEEN: f64 = 3.688_879_454_113_936;
 /// Least probability that is given as a value, some 26 sigmas out. Below it only a bound is given.
 const FAINTEST: f64 = 1e-150;
@@ -168,8 +168,7 @@ impl Weighed {
         logarithms.map(|weight| libm::exp(weight - self.scale)).sum::<f64>() / self.sum
     }
 
-    /// True if the last stage alone agrees with those before, and its standard error is at most half as much again as
-    /// its number of points allows.
+    /// True if the last stage agrees with those before, and its standard error is at most 1.5 times that of its number of points.
     pub(super) fn confirmed(&self, wanted: f64) -> bool {
         let Some((last, before)) = self.stages.split_last().filter(|(_, before)| !before.is_empty()) else {
             return false;
@@ -286,7 +285,7 @@ impl ProbabilityEstimate {
         Self { probability: None, interval, bounds, greatest_part: None, ..self }
     }
 
-    /// Estimate whose interval has the bound of what no point met, joined by the method of Zou and Donner (2008).
+    /// Estimate whose interval has the bound of unseen rejects, joined by the method of Zou and Donner (2008).
     fn with_unmet(self, unmet: Option<Unmet>) -> Self {
         let value = self.probability.map_or(0.0, |found| found.value);
         let apart = libm::hypot(self.interval[1] - value, unmet.map_or(0.0, |unmet| unmet.most));

@@ -52,8 +52,8 @@ const MANY: u64 = 2000;
 const WIDTH: f64 = 1.5;
 /// Greatest number of variables for the wide density: for 12, one point in 130 times the density.
 const FEW_VARIABLES: usize = 12;
-/// Part of a target's points for places from the model itself, if the surrogate has places too: if the surrogate's are
-/// likelier, and if the model's are.
+/// Part of a target's points for places from the model beside those of the surrogate: if the surrogate's are likelier, and if the model's
+/// are.
 const SHOWN: [f64; 2] = [0.3, 0.7];
 /// Rows that are drawn and weighted together.
 const ROWS: usize = 512;
@@ -82,8 +82,7 @@ pub(super) struct Mixture<'a> {
     dimensions: usize,
 }
 
-/// Lines through all points in the direction of a place: distance of the point along it, distance of the crossing, and
-/// logarithm of the spreads' factor of the height.
+/// Lines through all points towards a place: distances of point and crossing along it, and the logarithm of the factor of the height.
 struct Crossing {
     along: Vec<f64>,
     crossing: Vec<f64>,

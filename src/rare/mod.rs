@@ -546,7 +546,7 @@ fn correct(places: Vec<Place>, targets: &[Target<'_>], budget: usize, model: &mu
     places.into_iter().zip(crosses).filter_map(kept).collect()
 }
 
-/// Values of the model on the way to some places.
+/// Values of the model along the lines to some places.
 struct Looked {
     /// Distances and values for every place, ascending.
     values: Vec<Vec<(f64, f64)>>,

@@ -14,7 +14,7 @@ pub(super) struct Model<'a> {
     pub(super) space: &'a NormalSpace<'a>,
     /// Number of points that were answered: the size of all samples together.
     pub(super) answered: u64,
-    /// For every characteristic, the number of points without a value, and the first error.
+    /// Number of points without a value and the first error, for every characteristic.
     pub(super) lost: Vec<(u64, Option<EvaluationError>)>,
 }
 

@@ -23,11 +23,11 @@ pub const MOST_TAIL_POINTS: usize = 400;
 const FEWEST: u64 = 100;
 /// Relative standard error of every probability at which the points end.
 const ENOUGH: f64 = 0.1;
-/// Divisor of the number of points for those that find places: of the surface, and of what check points show.
+/// Divisor of the number of points for those that find places: of the surface, and of the refuted tails.
 const PLACING: usize = 4;
 /// Divisor of the rest for the places that explored points show.
 const LEARNING: usize = 3;
-/// Factors of the distance of a place at which the model is asked whether it rejects.
+/// Factors of the distance of a place at which the model is evaluated.
 const BEYOND: [f64; 3] = [1.0, 1.1, 1.25];
 
 /// Tail of a characteristic in which check points refute its surface.

@@ -135,8 +135,8 @@ struct Exchange<'p> {
 
 /// Sums of one scrambling, with their cost.
 struct Replicate {
-    /// Sums by characteristic: number of points, their sum and squares; then for every factor the number of points, and sums of means,
-    /// products, mean squares, and squared differences.
+    /// Sums by characteristic: number, sum and squares; then for every factor number, means, products, mean squares, and squared
+    /// differences.
     sums: Vec<Vec<f64>>,
     ledger: Ledger,
 }

@@ -310,8 +310,7 @@ fn share(known: &Parts<u64>, kept: &Parts<u64>, sampler: Sampler) -> Option<(f64
     Some((value, interval))
 }
 
-/// Widens a joint yield by the uncertainty of measured samples: at least as many assemblies are rejected as by one characteristic, and at
-/// most as many as by all of them one after the other.
+/// Widens a joint yield by the uncertainty of measured samples: the rejects lie between those of one characteristic and the sum over all.
 pub(super) fn with_sampling(joint: YieldEstimate, characteristics: &[SimulatedCharacteristic]) -> YieldEstimate {
     let (mut most, mut least, mut measured) = (1.0 - joint.value, 0.0f64, false);
     for one in characteristics {

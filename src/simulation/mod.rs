@@ -75,9 +75,8 @@ pub struct SimulationOptions {
     pub until: Option<f64>,
     /// Half-width of the interval of every yield at which the simulation ends.
     pub until_yield: Option<f64>,
-    /// Options of an analysis whose surrogate serves as control variate: its moments are exact, only the difference to the model is
-    /// sampled, and standard errors shrink by the part that it explains. `auto` is `full` up to 20 varying dimensions, `six-n` beyond.
-    /// Quantiles and histogram stay those of the sample.
+    /// Options of an analysis whose surrogate is the control variate: only its difference to the model is sampled, with smaller standard
+    /// errors. `auto` is `full` up to 20 varying dimensions, `six-n` beyond. Quantiles and histogram stay those of the sample.
     ///
     /// If the model fails at some points, their differences are assumed to be like the others'. If the model is far from the surrogate, the
     /// standard error of the kurtosis needs more points than that of a plain sample. For a lognormal distribution with log-sd 0.15, two

@@ -72,8 +72,8 @@ impl Portions {
         }
     }
 
-    /// Portions from which the bins of a histogram are chosen, with the number of rows of each: the first batch of a cheap model, and few
-    /// points of a costly one.
+    /// Portions from which the bins of a histogram are chosen, with their rows: the first batch of a cheap model, few points of a costly
+    /// one.
     pub(super) fn first_batch(&self) -> Vec<(Portion, usize)> {
         let (most, rows) = if self.costly { (1, COSTLY_SCALE) } else { (TASKS as u64, usize::MAX) };
         let portion = |index: u64| {

@@ -32,8 +32,8 @@ pub(super) fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estima
     estimates
 }
 
-/// Quantile with its standard error: half the distance of the quantiles one standard deviation of the binomial count below and above it, or
-/// the scatter of the replicates.
+/// Quantile with its standard error: half the distance of the quantiles one binomial standard deviation on either side, or the scatter of
+/// replicates.
 pub(super) fn quantile(p: f64, fine: &Fine, [least, greatest]: [f64; 2], replicates: &[Replicate]) -> Option<Estimate> {
     let n = fine.total() as f64;
     // If fewer than one value is expected beyond it, it would be the least or the greatest one for any tail.

@@ -14,7 +14,7 @@ const FELT: f64 = 0.01;
 const OF_REJECTS: f64 = 0.1;
 /// Change of a reject rate below which a residual is not reported.
 const SELDOM: f64 = 1e-6;
-/// Part of the last residual up to which the surface is said to hold.
+/// Part of the last residual up to which the surface holds.
 const SMALL: f64 = 0.1;
 /// Least part of the deviation of a named input in that of all.
 const NAMED: f64 = 0.3;

@@ -479,7 +479,7 @@ warnings! {
     KinkAtNominal = "kink-at-nominal" by surface::kink_at_nominal {
         /// The characteristic.
         characteristic: String,
-        /// The dimensions along which it is so.
+        /// The dimensions concerned.
         dimensions: Vec<String>,
     };
     /// A characteristic jumps within the tolerances.
@@ -713,7 +713,7 @@ warnings! {
         failed: usize,
         /// The error at the first of them.
         failure: Option<String>,
-        /// For formulas, an interval that contains every assembly, and the number of boxes of interval arithmetic used.
+        /// Interval that contains every assembly, and the number of boxes of interval arithmetic; for formulas only.
         bounds: Option<([f64; 2], usize)>,
     };
     /// Dimensions with a fit of ISO 286 were given a free tolerance.
@@ -757,7 +757,7 @@ warnings! {
     Stopped = "stopped" by run::stopped {
         /// The reason why it stopped.
         cause: StopReason,
-        /// The time limit in seconds, where that stopped it and is known.
+        /// The time limit in seconds, if it stopped the run and is known.
         limit_s: Option<f64>,
         /// The amount done until then.
         done: u64,

@@ -202,7 +202,7 @@ impl Failure {
         }
     }
 
-    /// Returns the actions to take, if the library knows any.
+    /// Returns the actions to take, if the library has any.
     fn advice(&self) -> Vec<Advice> {
         match self {
             Self::Method(error) | Self::Sweep(SweepError::Method(error)) | Self::Lot(LotError::Method(error)) => {

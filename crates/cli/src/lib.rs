@@ -147,8 +147,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     run_code(arguments).into()
 }
 
-/// Runs the command as [`run`] does, and returns the exit code as a number, for callers that end the process in another way than by an
-/// [`ExitCode`].
+/// Runs the command like [`run`], and returns the exit code as a number.
 pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let given: Vec<OsString> = arguments.into_iter().collect();
     let as_json = given.iter().any(|argument| argument == "--json");

@@ -108,7 +108,7 @@ impl<'s> Look<'s> {
 }
 
 impl Look<'_> {
-    /// Prints what was read from a table, and notes on it.
+    /// Prints the content of a table, and notes on it.
     pub(super) fn note(self, summary: &str, notes: &[String]) {
         if self.quiet {
             return;

@@ -64,7 +64,7 @@ const HEADERS: [&str; 21] = [
     "point,characteristic,requirement,required,cost,",
 ];
 
-/// Contents that a file will get, which decide what it may hold before.
+/// New contents of a file, which decide the contents that may be replaced.
 pub(super) enum Content<'h> {
     /// A report in any of its forms.
     Report,
@@ -74,7 +74,7 @@ pub(super) enum Content<'h> {
     Study,
 }
 
-/// True if nobody misses this file: it is empty, or holds what this program wrote and can write again.
+/// True if the file can be replaced without a loss: it is empty, or this program wrote it and can write it again.
 pub(super) fn is_free(path: &Path, content: &Content<'_>) -> std::io::Result<bool> {
     let mut file = File::open(path)?;
     let mut head = Vec::new();
@@ -95,14 +95,14 @@ fn first_line(head: &[u8]) -> &[u8] {
     head.split(|&byte| byte == b'\n').next().unwrap_or_default().trim_ascii_end()
 }
 
-/// True for a print that nobody changed after this program.
+/// True for a print that has not been changed since this program wrote it.
 fn is_own_print(mut file: File) -> bool {
     let mut end = Vec::new();
     let from_end = std::io::SeekFrom::End(-(MARK.len() as i64));
     file.seek(from_end).and_then(|_| file.read_to_end(&mut end)).is_ok() && end == MARK
 }
 
-/// True for a workbook that nobody saved after this program.
+/// True for a workbook that has not been saved since this program wrote it.
 fn is_own_workbook(file: File) -> bool {
     let mark = format!("<cp:lastModifiedBy>{AUTHOR}</cp:lastModifiedBy>");
     let core = || -> Option<String> {

@@ -148,7 +148,7 @@ impl Bar {
     }
 }
 
-/// Text behind the count: what was planned if that is passed, the speed, and how many points failed or were known.
+/// Text behind the count: the planned number if it is passed, the speed, and the numbers of failed and of known points.
 fn message(so_far: &Progress, meter: &Meter, planned: u64) -> String {
     let part = |count: usize, what: &str| if count == 0 { String::new() } else { format!(", {count} {what}") };
     let more = planned.checked_sub(so_far.points as u64);
@@ -207,7 +207,7 @@ mod tests {
         assert_eq!(message(&progress(9, 0, 0), &meter([0, 9]), 61), ", 9.0/s");
     }
 
-    /// A steady run tells its time left, which is exact for a constant rate.
+    /// A steady run has an estimate of its time left, which is exact for a constant rate.
     #[test]
     fn a_steady_run_knows_its_end() {
         let steady = meter((0..=20).map(|second| 3 * second));
@@ -216,7 +216,7 @@ mod tests {
         assert_eq!(steady.text(Some(0)), ", 3.0/s");
     }
 
-    /// A run whose halves differ by more than a factor of two does not know its end.
+    /// A run whose halves differ by more than a factor of two has no estimate of its end.
     #[test]
     fn an_uneven_run_does_not() {
         let slowing = meter((0..=20).map(|second| if second <= 10 { 10 * second } else { 100 + 4 * (second - 10) }));

@@ -66,7 +66,7 @@ pub(super) fn read_file(path: &Path, asked: &HowArgs, externals: Externals) -> R
     changed(Study::read_with(path, externals)?, asked)
 }
 
-/// Reads a stack-up table as a study, and prints what was read. The name of its characteristic is not needed.
+/// Reads a stack-up table as a study, and prints its content. The name of its characteristic is not needed.
 pub(super) fn read_table(
     path: &Path,
     table: &TableArgs,

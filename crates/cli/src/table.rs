@@ -19,13 +19,13 @@ const TABLE: &str = "Stack-up table";
 /// Meaning of a stack-up table.
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct TableArgs {
-    /// The header of a column in the table's own words, such as nominal=Wert, or ignore=HEADER for one that is left out (repeatable); roles are name, part,
-    /// description, drawing, revision, feature, direction, factor, quantity, nominal, upper, lower, minus, tolerance, plus-minus, max, min, unit, distribution,
-    /// cp, cpk, sigma, sigmas, shift, ignore
+    /// The header of a column with this role, such as nominal=Wert, or ignore=HEADER to leave a column out (repeatable); roles: name, part,
+    /// description, drawing, revision, feature, direction, factor, quantity, nominal, upper, lower, minus, tolerance, plus-minus, max, min,
+    /// unit, distribution, cp, cpk, sigma, sigmas, shift, ignore
     #[arg(long, value_name = "ROLE=HEADER", value_parser = column, help_heading = TABLE, hide_short_help = true)]
     pub(super) column: Vec<(ColumnRole, String)>,
 
-    /// The sheet of a workbook; without it the first one whose columns are known
+    /// The sheet of a workbook [default: the first with known columns]
     #[arg(long, value_name = "NAME", help_heading = TABLE, hide_short_help = true)]
     pub(super) sheet: Option<String>,
 
@@ -82,7 +82,7 @@ impl TableArgs {
 pub(super) struct TableStudy {
     /// Text of the study as TOML, with the notes of the import as comments.
     pub(super) text: String,
-    /// One line on what was read.
+    /// One line on the content of the table.
     pub(super) summary: String,
     pub(super) notes: Vec<String>,
 }

@@ -244,28 +244,28 @@ pub(super) enum StencilArg {
 /// The sources of derivatives as values of an option.
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub(super) enum DerivativesArg {
-    /// Exact at the means, for the moments too: one evaluation, and one at the nominal values where they differ
+    /// Exact derivatives at the means, for the moments too: one evaluation, and one at the nominal values if these differ
     Exact,
     /// Differences, for the sensitivities too
     Difference,
 }
 
-/// How a stack-up table or a budget is written.
+/// Format of a stack-up table or a budget.
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub(super) enum StackArg {
-    /// For people
+    /// Text
     Text,
-    /// For spreadsheets, all characteristics in one table
+    /// One table of all characteristics, for spreadsheets
     Csv,
-    /// For documents
+    /// Markdown, for documents
     Markdown,
 }
 
-/// Which sensitivities are requested, as values of an option.
+/// Requested sensitivities, as values of an option.
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub(super) enum SensitivitiesArg {
-    /// Of the dimensions that have a tolerance
+    /// Dimensions that have a tolerance
     Varying,
-    /// Of all dimensions
+    /// All dimensions
     All,
 }

@@ -10,8 +10,8 @@ use super::{Block, Model, ModelInput, ModelOutput};
 use sensitol::assembly::{EvaluationError, Responses};
 use sensitol_numeric::elementary::{Cos, Elementary, Exp, Sin};
 
-/// Models the torsional vibration of a three-cylinder four-stroke engine, with a flywheel of two masses, or with a single-mass one and the
-/// clutch's damper behind it:
+/// Models the torsional vibration of a three-cylinder four-stroke engine with a dual-mass flywheel, or with a single-mass one and a clutch
+/// damper:
 ///
 /// ```text
 /// D(W)  = (J1 + J2)(k + i c W) - J1 J2 W^2

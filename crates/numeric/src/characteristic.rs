@@ -267,8 +267,7 @@ pub struct KeptLimits {
 }
 
 impl KeptLimits {
-    /// Greatest number of roundings of a value, each in the size of all of its terms: as many as a sum of 256 terms has at most, or a
-    /// surface through the values of a sum of some dozens.
+    /// Greatest number of roundings of a value, each in the size of all of its terms: those of a sum of 256 terms.
     const ROUNDINGS: f64 = 256.0;
 
     /// Limits for values whose terms have magnitudes that sum to `terms`.

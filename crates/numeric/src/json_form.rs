@@ -56,7 +56,7 @@ impl<T: Copy> From<&[T; 2]> for Sides<T> {
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RejectIntervals {
-    /// 95 % interval of the assemblies below the lower limit alone, per million. 0 to 0 if a proof excludes them, null if it is unknown.
+    /// 95 % interval of the assemblies below the lower limit alone, per million: 0 to 0 if a proof excludes them, null if it is unknown.
     ppm_below_interval: Option<[f64; 2]>,
     /// 95 % interval of the assemblies above the upper limit alone, per million, in the same form.
     ppm_above_interval: Option<[f64; 2]>,

@@ -49,7 +49,7 @@ pub struct AllocationReport {
     pub(crate) loss: BeforeAfter<Option<f64>>,
     /// The cost of the cheapest tolerances without rounding to steps or standard grades; null without such rounding.
     pub(crate) cost_unrounded: Option<f64>,
-    /// The machines that the processes need, and what it costs to set them up, which is part of the cost.
+    /// Machines of the processes, with the cost of their setup, which is part of the cost.
     pub(crate) setups: Vec<SetUp>,
     /// The objective, and the most that may be spent on it.
     pub(crate) goal: Goal,
@@ -61,7 +61,7 @@ pub struct AllocationReport {
     pub(crate) recentred: Vec<OfDimension<Moved>>,
     /// Every requirement.
     pub(crate) requirements: Vec<OfCharacteristic<Kept>>,
-    /// The joint yield that is required of all characteristics with limits; null where none is.
+    /// Required joint yield of all characteristics with limits; null if none is required.
     pub(crate) joint_requirement: Option<JointKept>,
     /// Shadow prices of limits and required sigmas.
     pub(crate) shadow_prices: Vec<OfCharacteristic<ShadowPrice>>,
@@ -136,7 +136,7 @@ pub(crate) struct AllocatedReport {
     /// The allocated tolerance of the dimension.
     #[serde(flatten)]
     pub(crate) of: OfDimension<Allocated>,
-    /// Lower and upper deviation from the nominal before and after, where there is a band.
+    /// Lower and upper deviation from the nominal before and after, if there is a band.
     pub(crate) deviations: BeforeAfter<Option<[f64; 2]>>,
     /// Share of each characteristic's variance.
     pub(crate) contributions: Vec<OfCharacteristic<BeforeAfter<Option<f64>>>>,

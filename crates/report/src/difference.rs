@@ -87,7 +87,7 @@ pub(crate) struct FigurePair {
 pub(crate) struct SharePair {
     /// The dimension.
     pub(crate) dimension: String,
-    /// The two shares of the variance; null where it is not in the study, or not known.
+    /// The two shares of the variance; null if it is not in the study, or not known.
     pub(crate) shares: [Option<f64>; 2],
 }
 

@@ -115,7 +115,7 @@ pub struct DimensionReport {
     /// Texts beside its name.
     #[serde(flatten)]
     pub(crate) labels: Labels,
-    /// Degrees of freedom of its standard uncertainty; null where the study says none.
+    /// Degrees of freedom of its standard uncertainty; null if the study gives none.
     pub degrees: Option<f64>,
 }
 

@@ -1,11 +1,11 @@
-//! Text of small reject rates and their yields, with no digit beyond what no point met.
+//! Text of small reject rates and their yields, with no digit below the bound of unseen rejects.
 
 use crate::document::number::{known, significant, within, yielded};
 use sensitol::rare::{Beyond, RareCharacteristic};
 use sensitol_numeric::sampling::Estimate;
 
-/// Formats the rejects on one side in ppm, with no digit beyond the bound of what no point met. If there is no
-/// estimate, or the bound is greater, it is the upper end of the interval.
+/// Formats the rejects on one side in ppm, with no digit below the bound of unseen rejects. If there is no estimate, or the bound is
+/// greater, it is the upper end of the interval.
 pub(crate) fn rejects(of: &Beyond, digits: usize) -> String {
     let unmet = of.unmet.map(|unmet| unmet.most);
     match of.probability {

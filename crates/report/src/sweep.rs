@@ -73,7 +73,7 @@ pub struct SweptReport {
     pub(crate) lower: Option<f64>,
     /// Upper limit.
     pub(crate) upper: Option<f64>,
-    /// In the order of the parameter's values.
+    /// Points in the order of the parameter's values.
     pub points: Vec<SweptPointReport>,
 }
 
@@ -106,7 +106,7 @@ pub struct SweptPointReport {
     /// Share of assemblies within the limits.
     #[serde(rename = "yield")]
     pub(crate) yield_: Option<f64>,
-    /// Within which that is known, measured samples included; null where it is not known.
+    /// Interval of the yield, with the uncertainty of measured samples; null if unknown.
     pub(crate) yield_interval: Option<[f64; 2]>,
     /// Source of the yield; null without limits.
     pub(crate) yield_source: Option<YieldSource>,

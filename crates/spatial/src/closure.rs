@@ -255,7 +255,7 @@ impl<'a> Closure<'a> {
         closed
     }
 
-    /// Newton steps of least norm, so that a motion that no joint stops stays where it is.
+    /// Newton steps of least norm, so that a motion that no joint constrains is not changed.
     pub(crate) fn search(&mut self) -> bool {
         for _ in 0..MOST {
             let linear = self.linear();

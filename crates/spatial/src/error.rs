@@ -70,7 +70,7 @@ pub enum SpatialError {
         /// Index of the joint.
         index: usize,
     },
-    /// Joints that repeat what others hold.
+    /// Joints that fix freedoms again that others fix.
     #[error(
         "joint `{joint}` takes {takes}, and only {left} of these {are} free after {before}{named}: {equations} equations for {unknowns} unknowns, rank {rank}",
         are = if *left == 1 { "is" } else { "are" },

@@ -17,12 +17,12 @@ use crate::vector::Vector;
 
 /// Greatest number of contacts of a joint: they have 220 sets of three, of which at most 72 carry a force.
 const MOST_CONTACTS: usize = 12;
-/// Part of the force that is moved to the first contact, and less to each further one, so that a force over the line of two contacts has
-/// one set on each side of it. It decides among sets of equal push only.
+/// Part of the force that is moved to the first contact, with less for each further one, so that two contacts give distinct sets. It
+/// decides among sets of equal push only.
 const NUDGE: f64 = 1e-8;
 /// Part of the force that counts as none at a contact: the part could rock about the line of the others.
 const NOTHING: f64 = 1e-6;
-/// Part of the force along the plane that is left to friction: that of a plane which is off by a degree at the nominal sizes.
+/// Part of the force along the plane that is left to friction: that of a plane tilted by a degree at the nominal sizes.
 const FRICTION: f64 = 0.02;
 /// Part of the force that rounding leaves along motions that no contact stops.
 const ROUNDING: f64 = 1e-9;

@@ -17,7 +17,7 @@ pub struct PressedContacts {
     pub joint: usize,
     /// Contacts of every set that carry a part of the force, by their names.
     pub sets: Vec<Vec<String>>,
-    /// Texts of the comparisons in the formulas. Where the one of index k is true, set k + 1 goes before all sets up to k.
+    /// Texts of the comparisons in the formulas. If the one of index k is true, set k + 1 precedes all sets up to k.
     pub changes: Vec<String>,
 }
 

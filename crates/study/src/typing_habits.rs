@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-/// Beginning of the text on what a tolerance is.
+/// Beginning of the text on the meaning of a tolerance.
 const TOLERANCE: &str = "a half band";
 
 /// Probable mistake behind a fault.

@@ -1,4 +1,4 @@
-//! Form of a requirement in an allocation: what every kind of requirement implements.
+//! Form of a requirement in an allocation, implemented by every kind of requirement.
 //!
 //! ```text
 //! value <= 1          the constraint, with slopes by ln T of every group
@@ -22,8 +22,7 @@ use crate::analysis::CharacteristicAnalysis;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::requirement::Requirement;
 
-/// Rate at which a required sigma, or the usable part of the slack, falls over the range of a Pareto front: from 1.5
-/// times to 0.55 times the required value.
+/// Rate at which a required sigma, or the slack, falls over the range of a Pareto front: from 1.5 to 0.55 times the required value.
 pub(super) const FALLS: f64 = 0.4;
 /// Step of a move of the limits, in sigmas of the slack. Truncation is 1e-10, and rounding 1e-11.
 const LIMIT_STEP: f64 = 1e-5;

@@ -1,4 +1,4 @@
-//! Requirements and costs of what is made, as functions of the tolerances.
+//! Requirements and costs as functions of the tolerances.
 //!
 //! A new kind of requirement is a variant of [`Requirement`](sensitol_numeric::requirement::Requirement), a file
 //! `required_*.rs` that implements [`RequirementForm`](form::RequirementForm), and a line in

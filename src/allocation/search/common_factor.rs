@@ -13,8 +13,8 @@ const STEP: f64 = 1.02;
 /// Least and greatest factor of the search.
 const RANGE: [f64; 2] = [1e-4, 100.0];
 
-/// Largest common factor of all tolerances that keeps every requirement: the first on the way up from 1 at which one
-/// breaks, or down from 1 at which none does. Returns None if no factor keeps them all, or every one does.
+/// Largest common factor of all tolerances that keeps every requirement, searched upwards or downwards from 1. Returns None if no factor
+/// keeps them all, or every one does.
 ///
 /// Derivatives are fixed, so that factors far from 1 are extrapolated.
 pub(in crate::allocation) fn loosest(responses: &Responses, constraints: &[Constraint]) -> Option<f64> {

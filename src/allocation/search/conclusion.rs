@@ -91,7 +91,7 @@ impl Driver<'_> {
         Setting { responses, priced, constraints, losses, setups, stopped, anywhere: false }
     }
 
-    /// The tolerances chosen, with their proof, their cost, and the prices of what holds it up.
+    /// The tolerances chosen, with their proof, their cost, and the prices of the active constraints.
     fn conclude_tolerances(&self, allocation: &mut Allocation, original: &Problem, end: &SearchEnd) {
         let Some((solved, offers, proof)) = &end.last else { return };
         let loss = self.loss_at(&end.station);
@@ -392,7 +392,7 @@ fn present(group: &Priced, dimension: usize, problem: &Problem) -> f64 {
 struct JudgedEnd<'e> {
     /// Analysis of the trial, or of the linearization point if there was no trial.
     analysis: &'e Analysis,
-    /// The values of the constraints; kept where they are at most 1.
+    /// The values of the constraints; a constraint is kept if its value is at most 1.
     values: Vec<f64>,
     /// The requirements of the allocation, in its order.
     requirements: Vec<Judged>,
@@ -482,7 +482,7 @@ pub(in crate::allocation) fn doubts(problem: &Problem, priced: &[Priced], alloca
     not_confirmed.into_iter().chain(bent).chain(refuted).chain(failed).collect()
 }
 
-/// True if the status says that tolerances were found.
+/// True for a status with tolerances.
 pub(in crate::allocation) fn is_found(status: Status) -> bool {
     matches!(status, Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal)
 }

@@ -37,7 +37,7 @@ pub(in crate::allocation) struct RefinementSearch<'s> {
     pub(in crate::allocation) written: Option<AsWritten<'s>>,
     open: Vec<OpenTask>,
     best: Option<BestRefined>,
-    /// Least objective of what is left out unsearched.
+    /// Lower bound of the objective in the part that is not searched.
     left_out: f64,
     /// Weakest status among the bounds; `Optimal` if all of them are proven.
     weakest: Status,
@@ -209,7 +209,7 @@ fn objective(found: &Allocation) -> f64 {
     }
 }
 
-/// True if the status says that the requirements are missed.
+/// True for a status of missed requirements.
 fn is_settled(status: Status) -> bool {
     matches!(status, Status::Infeasible | Status::NoFeasiblePointFound)
 }

@@ -12,8 +12,8 @@ use crate::allocation::result::allocation::{Attainable, Proof, Status};
 use crate::allocation::result::solver_result::{Chosen, Solved};
 use crate::allocation::search::step::Steps;
 
-/// Greatest factor of a tolerance within which derivatives are trusted when they say that nothing is possible. It is
-/// also the factor by which tolerances may move in a step after the model has failed farther out.
+/// Greatest factor of a tolerance within which derivatives are trusted to prove that nothing is possible. It is also the factor by which
+/// tolerances may move in a step after the model has failed farther out.
 const REACH: f64 = 1.5;
 /// Greatest relative rise of the cost that counts as rounding, or as an effect of the margin of tolerances.
 const DEARER: f64 = 1e-8;
@@ -60,7 +60,7 @@ pub(in crate::allocation) enum Answer<P> {
 pub(in crate::allocation) enum Finish {
     /// Tolerances chosen last.
     LastChoice,
-    /// No tolerances, with the status that says why and the best value of the requirement that is not kept.
+    /// No tolerances: the status with the reason, and the best value of the requirement that is not kept.
     Nothing { status: Status, attainable: Option<Attainable> },
 }
 
@@ -194,8 +194,7 @@ impl<P> SearchState<P> {
         self.last.as_ref().is_some_and(alike) && farthest(&self.at, &solved.at) <= change
     }
 
-    /// Confirms the tolerances at which the model was asked, with the multipliers of the same choice and its residual
-    /// there.
+    /// Confirms the tolerances at which the model was evaluated, with the multipliers of the same choice and its residual there.
     pub(in crate::allocation) fn confirm(&mut self, (solved, _, proof): Chosen, residual_at: impl Fn(&[f64]) -> f64) {
         self.last = self.last.take().map(|(old, offers, _)| {
             let residual = proof.residual.map(|_| residual_at(&old.at));

@@ -166,8 +166,8 @@ impl<'s, 'a> VerifiedSearch<'s, 'a> {
         self.relax((tight, offers));
     }
 
-    /// Lowers the largest use by moving one tolerance after the other, in both directions, because a wide tolerance may
-    /// move a mean in the right direction.
+    /// Lowers the largest use by moving one tolerance after the other. Both directions count, because a wide tolerance may move a mean
+    /// favourably.
     fn relax(&mut self, (mut at, offers): Tolerances) {
         let Some(mut use_) = self.trial(&at, &offers).map(|trial| trial.use_()) else { return };
         for step in [1.0, 0.5, 0.25] {

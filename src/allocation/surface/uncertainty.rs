@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use sensitol_numeric::requirement::Requirement;
 
-/// Distances of the pessimistic ends of the intervals from the figures that judge trial tolerances, by kind of
-/// requirement and in the unit of its amount. A kind that is missing has none.
+/// Distances of the pessimistic ends of the intervals from the figures of trial tolerances, by kind of requirement and in its unit. A kind
+/// that is missing has none.
 #[derive(Debug, Clone, Default)]
 pub(in crate::allocation) struct Uncertainty {
     by_kind: BTreeMap<&'static str, f64>,

@@ -20,8 +20,8 @@ use sensitol_numeric::distribution_bounds::{DistributionPromise, LinearYield, Yi
 use sensitol_numeric::law::{Branch, SurfaceLaw};
 use sensitol_numeric::surrogate::Univariate;
 
-/// Values of a dimension at which the yield of a characteristic that is not linear is counted: a part of 64 of the band, so that a yield
-/// that falls from 1 to 0 over half a sigma of the other inputs has some values on its slope where the band is a sigma wide.
+/// Number of values of a dimension at which the yield of a nonlinear characteristic is counted. With 64 over a band of one sigma, a yield
+/// that falls from 1 to 0 over half a sigma has some on its slope.
 const PLACES: u32 = 65;
 
 /// Bounds of the yields by the places of their characteristics.

@@ -152,8 +152,8 @@ impl GuardedLaw {
         Some(Self { shares, law: None, points: Some(points) })
     }
 
-    /// Quantiles at these tails and probabilities, at most one half each, by a distribution that has passed its tests or by the points
-    /// that replace it. Returns None if one of them is unknown.
+    /// Quantiles at these tails and probabilities, at most one half each, by a tested distribution or by the points that replace it.
+    /// Returns None if one of them is unknown.
     pub(in crate::analysis) fn quantiles(&self, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Option<Vec<LawFigure>> {
         if let Some(points) = &self.points {
             return Some(of.iter().map(|&(tail, p)| points.quantile(tail, p)).collect());
@@ -224,7 +224,7 @@ impl SurfaceShares {
     }
 }
 
-/// True if measured values make the sums at the points of a contour too long, and the combinations of values are too many for a list.
+/// True if measured values are too many for sums at the points of a contour and for a list of combinations.
 fn has_too_many_atoms(
     surrogate: &Surrogate,
     inputs: &[Arc<dyn Distribution>],

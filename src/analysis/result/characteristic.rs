@@ -40,7 +40,7 @@ pub struct CharacteristicAnalysis {
     pub moments: Option<Moments>,
     /// Estimated errors of these results. None if there are no moments.
     pub error_estimate: Option<ErrorEstimate>,
-    /// Yield, quantiles, and what follows from them.
+    /// Yield, quantiles, and derived figures.
     #[serde(flatten)]
     pub distribution: DistributionFigures,
     /// Ranges that no assembly leaves.

@@ -5,8 +5,8 @@ use sensitol_numeric::sampling::clopper_pearson;
 /// Most points that are stated. A model that answers in a microsecond takes a quarter of an hour for as many.
 const MOST: u64 = 1_000_000_000;
 
-/// Smallest number of plain points whose 95 % interval (Clopper and Pearson 1934) lies on one side of the greatest share of rejects
-/// `allowed`, at the expected number of rejects for the share `rejected`. Returns None if no practicable number decides it.
+/// Smallest number of plain points whose 95 % interval (Clopper and Pearson 1934) excludes the share `allowed`, if the share `rejected` is
+/// right. Returns None if no practicable number decides it.
 ///
 /// ```
 /// use sensitol::analysis::points_to_decide;

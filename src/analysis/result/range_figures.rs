@@ -23,8 +23,8 @@ pub struct RangeFigures {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LinearFigures {
-    /// Value of a linear model with every dimension in the middle of its band: the middle of the worst case, of the RSS and of the two
-    /// inflations of it. It is the nominal value if all bands are symmetric.
+    /// Middle of the worst case and of the RSS: the value of a linear model with every dimension in the middle of its band. It is the
+    /// nominal value if all bands are symmetric.
     pub middle: Option<f64>,
     /// `sqrt(t'R t)` with `t` = slope x half-width (three sigma if a dimension has no band) and the correlation `R`. Without correlation it
     /// is the root of the sum of squares.

@@ -14,7 +14,7 @@ pub struct SampledTail {
     /// Yield by these points.
     #[serde(rename = "yield")]
     pub yield_: f64,
-    /// 95 % interval of the yield, with what no point may have met.
+    /// 95 % interval of the yield, unseen rejects included.
     #[serde(rename = "yield_interval")]
     pub interval: [f64; 2],
     /// Shares below the lower and above the upper limit. None if that limit does not exist.

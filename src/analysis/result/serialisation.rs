@@ -28,8 +28,7 @@ pub struct CharacteristicShape<'r> {
     requirements: Vec<Judged>,
     /// Bases of the figures: `proof`, `points` of the model, or the `surface`.
     basis: FigureBases,
-    /// Plain points of the model that would decide the target yield if it is right; null unless its verdict comes from a surface that no check
-    /// point refutes.
+    /// Plain points of the model that would decide the target yield; null unless the verdict comes from an unrefuted surface.
     points_to_decide: Option<u64>,
     /// Interval of the yield; null if unknown.
     yield_interval: Option<[f64; 2]>,

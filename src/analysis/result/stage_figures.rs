@@ -142,8 +142,8 @@ pub(in crate::analysis) fn with_stage<T>(
 }
 
 impl CharacteristicAnalysis {
-    /// Leaves out the slopes and the figures of a linear model, which do not exist where values are chosen from stock: difference quotients
-    /// over the jumps of a choice have any size and sign. A dimension that it does not depend on keeps its slope of 0.
+    /// Leaves out slopes and the figures of a linear model if values are chosen from stock: difference quotients over jumps have any size
+    /// and sign. A dimension that it does not depend on keeps its slope of 0.
     pub(in crate::analysis) fn without_linear(self, depends: &[bool]) -> Self {
         let sensitivities = self.sensitivities.into_iter().zip(depends).map(|(one, depends)| match depends {
             true => Sensitivity { first: None, second: None, rounding: None, exact: false, ..one },

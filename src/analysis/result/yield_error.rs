@@ -5,7 +5,7 @@ use sensitol_numeric::capability::{Capability, Law};
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::moments::Moments;
 
-/// Error of the reject rate: its change if each moment in turn is off by its error, combined as the root of the sum of squares.
+/// Error of the reject rate: its changes by the error of each moment, combined as the root of the sum of squares.
 ///
 /// Returns None if an error is unknown, there are no limits, or no distribution of the Pearson system has such moments.
 pub(in crate::analysis) fn of_yield(estimate: &ErrorEstimate, moments: &Moments, limits: SpecLimits) -> Option<f64> {

@@ -334,8 +334,7 @@ fn figures(moments: &Moments, capability: Option<&Capability>, limits: SpecLimit
     ]
 }
 
-/// Influence of each group of values on a figure, from the figure without that group: for a mean of `n` values, the sum of the deviations
-/// in the group, divided by `n`.
+/// Influence of each group of values on a figure, from the figure without that group.
 fn influences(without: impl Iterator<Item = f64>, one: &Measurement<'_>, groups: &Groups) -> Vec<f64> {
     let n = one.len() as f64;
     let left = |group: &Vec<u32>| n - group.iter().map(|&count| f64::from(count)).sum::<f64>();

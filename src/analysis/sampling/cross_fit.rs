@@ -476,8 +476,8 @@ impl<'p> CrossFit<'p> {
 }
 
 impl CrossFit<'_> {
-    /// First means of the powers of every part, centred and scaled by `origin` and `scale`, as far as they are known without points: two of
-    /// a polynomial, four of a product of functions of one input each. Returns None with correlated inputs.
+    /// Exact means of the powers of every part, centred and scaled by `origin` and `scale`: two of a polynomial, four of a product of
+    /// functions of one input each. Returns None with correlated inputs.
     fn exact(&self, beside: &Beside<'_>, [origin, scale]: [f64; 2]) -> Option<Vec<Vec<f64>>> {
         if self.problem.correlation().is_some() {
             return None;

@@ -15,8 +15,7 @@ use sensitol_numeric::verdict::Verdict;
 /// Most points within a budget: as many as `simulate` takes for rare events of an external program.
 const MOST: usize = 1000;
 
-/// Most points of the model in tails that check points refute, after `spent` evaluations: none but for `auto` of a costly model with
-/// limits, whose number of check points is not requested.
+/// Greatest number of points of the model in refuted tails, after `spent` evaluations. Only `auto` of a costly model with limits has any.
 pub fn most_tail_points(problem: &Problem, options: &Options, spent: usize) -> usize {
     let signature = problem.function().signature();
     let limited = problem.characteristics().iter().any(|one| one.limits().exist());

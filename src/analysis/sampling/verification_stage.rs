@@ -231,8 +231,7 @@ fn reported_quantiles(found: &SampledFigures) -> [Option<SampleQuantile>; 7] {
     found.sample.as_ref().filter(|_| varies).map_or([None; 7], |sample| sample.reported_quantiles())
 }
 
-/// True if points of the sample are needed later: for the risks of an inspection, for coverage intervals, or for a density because the
-/// surface with this unexplained share of the variance is not trusted.
+/// True if points of the sample are needed later: for inspection risks, coverage intervals, or the density of an untrusted surface.
 fn is_kept(one: &CharacteristicAnalysis, options: &Options, open: Option<f64>) -> bool {
     let drawn = options.densities && open.is_none_or(|share| share > TRUSTED);
     one.characteristic.inspection().is_some() || options.coverage.is_some() || drawn

@@ -145,7 +145,7 @@ impl StockLine {
         self.ends[0] + self.slope * (one.stock[place] - one.stock[0])
     }
 
-    /// Greatest distance of an answer from the line that leaves the choice right: half of what the nearest other value changes.
+    /// Greatest distance of an answer from the line that leaves the choice right: half of the change by the nearest other value.
     fn allowed(&self, one: &Adjustment, place: usize) -> f64 {
         /// Rounding of an answer, as a part of it. Programs print some ten digits.
         const ROUNDED: f64 = 1e-9;

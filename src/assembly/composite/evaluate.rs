@@ -8,9 +8,8 @@ use crate::assembly::implicit::{Anchor, RowSolution};
 use crate::assembly::responses::all_finite;
 use crate::assembly::{EvaluationError, Points, Request, Responses, Run, in_blocks};
 
-/// Parts of formulas that are looked at to explain the failures of one block of rows: all failures of short formulas, and the first few
-/// of long ones. Explaining a failure costs an evaluation of every part of all formulas, without the
-/// gain of a block.
+/// Greatest number of parts of formulas that are evaluated to explain the failures of one block of rows. Explaining a failure costs an
+/// evaluation of every part of all formulas, without the gain of a block.
 const EXPLAINED: usize = 1 << 17;
 
 impl Composite {
@@ -39,7 +38,7 @@ impl Composite {
         self.pass_gradients(request.points, origins, needed, answers, out);
     }
 
-    /// Lets a built-in model write its outputs itself, where nothing but these is asked, in its order. Returns false if it cannot.
+    /// Lets a built-in model write its outputs itself, if nothing else is requested and the order is its own. Returns false if it cannot.
     fn answers_in_place(
         &self,
         points: &Points,

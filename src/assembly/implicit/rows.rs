@@ -1,4 +1,4 @@
-//! Unknowns at many points: side by side where that succeeds, one by one by the safeguarded search elsewhere.
+//! Unknowns at many points: side by side if that succeeds, else one by one by the safeguarded search.
 
 use crate::assembly::formula::FormulaSet;
 use crate::assembly::implicit::anchor::Anchor;

@@ -32,7 +32,7 @@ pub struct PressedJoint {
     pub joint: String,
     /// Contacts that carry the force, for each set on which the part can rest.
     pub sets: Vec<Vec<String>>,
-    /// Comparisons that choose, as written in the formulas. Where the one of index k is true, set k + 1 goes before all sets up to k.
+    /// Comparisons that choose, as written in the formulas. If the one of index k is true, set k + 1 precedes all sets up to k.
     pub changes: Vec<String>,
 }
 

@@ -1,6 +1,6 @@
 //! Brent's search for a minimum in a bracket, one place at a time.
 
-/// Width of the bracket at the end, as a part of the whole range: half of the digits of a double, which gives the minimum all of them.
+/// Width of the bracket at the end, as part of the range: half the digits of a double, which give the minimum all digits.
 const TOLERANCE: f64 = 1e-9;
 /// Smaller part of the golden section.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;

@@ -18,8 +18,7 @@ pub(crate) const DEFAULT_NAME: &str = "gap";
 
 #[derive(Debug, Args)]
 pub(crate) struct ImportArgs {
-    /// The table: .xlsx, .csv, .tsv, .txt, a list of rows in .json, or - for what stands on stdin, such as cells copied from a spreadsheet; or
-    /// a part with semantic tolerances: .stp, .step or .p21
+    /// The table: .xlsx, .csv, .tsv, .txt, rows in .json, or - for stdin; or a part with semantic tolerances: .stp, .step or .p21
     pub(crate) table: PathBuf,
 
     #[command(flatten)]

@@ -12,8 +12,8 @@ pub(crate) struct CompareLotArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
 
-    /// The lot: tables (.csv, .tsv, .xlsx) with a row for each part or assembly, and columns by the names of dimensions and
-    /// characteristics; a header may carry a unit, `bore [mm]`. Columns lot, machine, operator and time are known
+    /// The lot: tables (.csv, .tsv, .xlsx) with a row for each part or assembly. Columns have the names of dimensions and characteristics;
+    /// a header may have a unit, `bore [mm]`. Columns lot, machine, operator and time are known
     #[arg(value_name = "LOT", required = true)]
     pub(crate) lot: Vec<PathBuf>,
 

@@ -43,15 +43,15 @@ pub(super) struct Arguments {
     #[arg(short, long, global = true, help_heading = OUTPUT)]
     pub(super) quiet: bool,
 
-    /// Print every contribution and interaction, however small, and what an external model writes to stderr
+    /// Print every contribution and interaction, however small, and the stderr of an external model
     #[arg(short, long, global = true, help_heading = OUTPUT)]
     pub(super) verbose: bool,
 
-    /// When to use colours; `never` prints plain ASCII too
+    /// Use of colours; `never` prints plain ASCII too
     #[arg(long, global = true, value_name = "WHEN", default_value = "auto", help_heading = OUTPUT)]
     pub(super) color: ColorChoice,
 
-    /// Print errors as JSON on stdout, and results where the command has such
+    /// Print results and errors as JSON on stdout
     #[arg(long, global = true, help_heading = OUTPUT)]
     pub(super) json: bool,
 }
@@ -60,9 +60,9 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Yield, contributors and moments of every characteristic
     ///
-    /// Several studies are read, then analysed, one after another, each with --budget and --time for itself. One that fails does
-    /// not keep the others from being done. The exit code is the worst of all: 130 interrupted, 2 an error, 3 a characteristic
-    /// without result, 1 a target missed, 0 done. With --json they are one array, in the order given.
+    /// Several studies are analysed one after another, each with its own --budget and --time. If one fails, the others are still analysed.
+    /// The exit code is the worst of all: 130 interrupted, 2 an error, 3 a characteristic without result, 1 a target missed, 0 done. With
+    /// --json they are one array, in the order given.
     #[command(
         after_help = "Examples:\n  sensitol analyze examples/engine-balance/study.toml --method full\n  sensitol analyze examples/first-study/study.toml examples/first-study/tighter.toml --check\n  sensitol analyze stack-up.xlsx --lower 0.2 --upper 0.8 --html gap.html"
     )]
@@ -78,10 +78,10 @@ pub(super) enum Command {
     /// with the same seed. A shard that is missing is an error, and one that is given twice counts once.
     #[command(after_help = "Examples:\n  sensitol merge examples/first-study/study.toml shard-*.json --html page.html")]
     Merge(MergeArgs),
-    /// Every method that fits, against a reference: speed and accuracy
+    /// Speed and accuracy of every suitable method against a reference
     #[command(after_help = "Examples:\n  sensitol compare examples/stacked-blocks/study.toml --svg trade.svg")]
     Compare(CompareArgs),
-    /// A measured lot against the study: parts, assemblies, and what explains their difference
+    /// A measured lot against the study: parts, assemblies, and causes of their difference
     #[command(
         after_help = "Examples:\n  sensitol compare-lot examples/housing-lot/study.toml examples/housing-lot/parts.csv examples/housing-lot/assemblies.csv --html lot.html"
     )]
@@ -93,8 +93,8 @@ pub(super) enum Command {
     Sweep(SweepArgs),
     /// The cheapest tolerances that keep the requirements
     ///
-    /// Costs stand in [costs]; each characteristic says what it requires: a target_yield or a require. Method auto
-    /// stands for full, and above twenty dimensions for six-n.
+    /// Costs are given in [costs], requirements by target_yield or require of the characteristics. Method auto stands for full, and above
+    /// twenty dimensions for six-n.
     #[command(
         after_help = "Examples:\n  sensitol allocate examples/shaft-and-housing/study.toml --write cheaper.toml\n  sensitol allocate examples/first-study/study.toml --confirm 100000"
     )]
@@ -104,16 +104,16 @@ pub(super) enum Command {
     Plan(PlanArgs),
     /// Validates studies; evaluates nothing
     ///
-    /// Nothing is evaluated or executed. Each study is validated, even if another has errors; the exit code is 2 if one has.
-    /// Errors have line, column and advice with --json; several studies give one array.
+    /// Nothing is evaluated or executed. Each study is validated, even if another has errors; any error gives exit code 2. Errors have
+    /// line, column and advice with --json; several studies give one array.
     #[command(
         after_help = "Examples:\n  sensitol check examples/stacked-blocks/study.toml\n  sensitol check examples/stacked-blocks/study.toml examples/engine-balance/study.toml"
     )]
     Check(CheckArgs),
     /// Prints a study with every short form written out
     ///
-    /// A relative dimension becomes a dimension of its own and a formula. Each such entry names its origin. Analysing what is printed
-    /// gives the same numbers.
+    /// A relative dimension becomes an absolute one and a formula. Each such entry names its origin. The printed study gives the same
+    /// numbers.
     #[command(after_help = "Examples:\n  sensitol expand examples/first-study/study.toml")]
     Expand(ExpandArgs),
     /// The built-in models, with their inputs and outputs
@@ -127,13 +127,13 @@ pub(super) enum Command {
     /// Analyses a study again at each save
     ///
     /// Each save gives the line of `analyze --brief` for every characteristic and the difference from the last result. Files that the study
-    /// reads are watched too. An error in the study is told, and watching goes on until Ctrl-C, which ends it with exit code 0.
+    /// reads are watched too. An error in the study is printed, and watching continues until Ctrl-C, which ends it with exit code 0.
     #[command(after_help = "Examples:\n  sensitol watch examples/first-study/study.toml")]
     Watch(WatchArgs),
     /// Makes a study of a stack-up table, in English or German
     ///
-    /// Each dimension has a row. The first row names the columns: name and nominal, and as far as there are direction or factor, tolerance or upper and lower deviation,
-    /// unit, distribution, part, description. Numbers have decimal points or commas.
+    /// Each dimension has a row. The first row names the columns: name and nominal are needed; direction or factor, tolerance or
+    /// deviations, unit, distribution, part and description are optional. Numbers have decimal points or commas.
     #[command(
         after_help = "Examples:\n  sensitol import stack.csv -o stack.toml\n  sensitol import stack.csv --column nominal=Wert --name play\n  sensitol import stack-up.xlsx --sheet Stack --lower 0.2 --upper 0.8 -o stack.toml"
     )]
@@ -212,7 +212,7 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.csv", requires = "points", help_heading = OUTPUT, hide_short_help = true)]
     pub(super) write_missing: Option<PathBuf>,
 
-    /// Check every figure at points of the model itself: a sample of a formula, or at most N points of an external model; 0 for none
+    /// Check every figure at points of the model: a sample of a formula, or at most N points of an external model; 0 for none
     #[arg(long, value_name = "N", value_parser = count, num_args = 0..=1, default_missing_value = "64")]
     pub(super) verify: Option<usize>,
 
@@ -228,7 +228,7 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, conflicts_with_all = ["json", "stack", "gum", "summary", "compare"], help_heading = OUTPUT)]
     pub(super) brief: bool,
 
-    /// Show what changed from the first study to the second: inputs, results, contributions; --check is about the second
+    /// Show the changes from the first study to the second: inputs, results, contributions; --check judges the second
     #[arg(long, conflicts_with_all = ["points", "stack", "summary"], help_heading = OUTPUT)]
     pub(super) compare: bool,
 
@@ -329,25 +329,24 @@ pub(super) struct AllocateArgs {
     #[command(flatten)]
     pub(super) study: StudyArgs,
 
-    /// Move the nominal values of these dimensions too, together with the tolerances to the least cost; without costs to where the fewest
-    /// are rejected. With bounds: DIM=LOW:HIGH
+    /// Move the nominal values of these dimensions too: to the least cost together with the tolerances, or without costs to the fewest
+    /// rejects. With bounds: DIM=LOW:HIGH
     #[arg(long, value_name = "DIM,..", value_delimiter = ',', value_parser = movable)]
     pub(super) recentre: Vec<Movable>,
 
-    /// A relative cost for every tolerance, in place of the study's: the tolerance unit of ISO 286 by the tolerance, the same with one grade
-    /// everywhere, or with the same effect everywhere [default: tolerance-unit where the study has no costs]
+    /// A relative cost for every tolerance, in place of the costs of the study [default: tolerance-unit if the study has no costs]
     #[arg(long, value_name = "BASIS")]
     pub(super) cost: Option<CostArg>,
 
-    /// The fewest rejects for what --cost-limit allows, in place of the least cost
+    /// Find the fewest rejects within --cost-limit, in place of the least cost
     #[arg(long, value_name = "WHAT", requires = "cost_limit", conflicts_with_all = ["maximise", "front", "svg"])]
     pub(super) minimise: Option<MinimiseArg>,
 
-    /// The highest Cpk for what --cost-limit allows, in place of the least cost
+    /// Find the highest Cpk within --cost-limit, in place of the least cost
     #[arg(long, value_name = "WHAT", requires = "cost_limit", conflicts_with_all = ["front", "svg"])]
     pub(super) maximise: Option<MaximiseArg>,
 
-    /// The most that all tolerances together may cost, with --minimise or --maximise
+    /// Greatest total cost of all tolerances, with --minimise or --maximise
     #[arg(long, value_name = "COST", value_parser = positive, allow_negative_numbers = true)]
     pub(super) cost_limit: Option<f64>,
 
@@ -363,7 +362,7 @@ pub(super) struct AllocateArgs {
     #[command(flatten)]
     pub(super) work: WorkArgs,
 
-    /// Seed of what is drawn [default: that of the study, or 1]
+    /// Seed of the random numbers [default: that of the study, or 1]
     #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true, hide_short_help = true)]
     pub(super) seed: Option<u64>,
 
@@ -440,7 +439,7 @@ pub(super) struct ExpandArgs {
     /// The study, a .toml or .json file
     pub(super) study: PathBuf,
 
-    /// The nominal values and constants of this one of the study's [configurations]
+    /// Use the nominal values and constants of this configuration of the study
     #[arg(long, value_name = "NAME")]
     pub(super) configuration: Option<String>,
 }
@@ -456,7 +455,7 @@ pub(super) struct ModelsArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct SchemaArgs {
-    /// The JSON Schema of what --json prints, instead of that of study files
+    /// The JSON Schema of reports (--json), instead of that of study files
     #[arg(long)]
     pub(super) report: bool,
 

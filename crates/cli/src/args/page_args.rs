@@ -34,7 +34,7 @@ pub(crate) struct ServeArgs {
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     pub(crate) port: u16,
 
-    /// The address to listen at; another one than 127.0.0.1 lets other machines in that know the token
+    /// The address to listen at; any other than 127.0.0.1 admits other machines that have the token
     #[arg(long, value_name = "ADDRESS")]
     pub(crate) address: Option<std::net::IpAddr>,
 

@@ -13,15 +13,15 @@ pub(crate) struct SampledArgs {
     /// The study, a .toml or .json file
     pub(crate) study: PathBuf,
 
-    /// Ask for this characteristic only (repeatable)
+    /// Analyse this characteristic only (repeatable)
     #[arg(long = "characteristic", alias = "kc", value_name = "NAME")]
     pub(crate) characteristics: Vec<String>,
 
-    /// The nominal values and constants of this one of the study's [configurations]
+    /// Use the nominal values and constants of this configuration of the study
     #[arg(long, value_name = "NAME")]
     pub(crate) configuration: Option<String>,
 
-    /// Seed of what is drawn [default: that of the study, or 1]
+    /// Seed of the random numbers [default: that of the study, or 1]
     #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
 
@@ -40,7 +40,8 @@ pub(crate) struct SimulateArgs {
     #[command(flatten)]
     pub(crate) of: SampledArgs,
 
-    /// Points [default: 100000, or as many as --target-error takes; with --rare 10000, of an external model 1000]; Sobol' takes 16 times a power of two, at least as many
+    /// Number of points [default: 100000, or as many as --target-error takes; with --rare 10000, of an external model 1000]; for Sobol'
+    /// rounded up to 16 times a power of two
     #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
     pub(crate) samples: Option<u64>,
 
@@ -56,7 +57,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long = "target-yield-error", alias = "until-yield", value_name = "R", value_parser = part, allow_negative_numbers = true)]
     pub(crate) until_yield: Option<f64>,
 
-    /// Sample only what the surrogate of an analysis leaves unexplained (control variate): the same standard errors with fewer points
+    /// Use the surrogate of an analysis as control variate: the same standard errors with fewer points
     #[arg(long = "control-variate", alias = "surrogate-control")]
     pub(crate) surrogate_control: bool,
 
@@ -68,7 +69,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true, requires = "sobol")]
     pub(crate) budget: Option<u64>,
 
-    /// The probability beyond each limit, small or not, by importance sampling that is placed with the surrogate
+    /// The probability beyond each limit by importance sampling, however small
     #[arg(long, conflicts_with_all = ["surrogate_control", "until_yield", "sampler"])]
     pub(crate) rare: bool,
 
@@ -80,7 +81,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "K", value_parser = whole, allow_negative_numbers = true, requires = "shard", conflicts_with_all = ["rare", "sobol", "surrogate_control", "until", "until_yield", "check", "html", "pdf", "csv"])]
     pub(crate) shards: Option<u64>,
 
-    /// This process, from 1 to --shards: its sums are written as JSON
+    /// Number of this process, from 1 to --shards; its sums are written as JSON
     #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true, requires = "shards")]
     pub(crate) shard: Option<u64>,
 

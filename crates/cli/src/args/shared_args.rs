@@ -25,15 +25,15 @@ pub(crate) struct HowArgs {
     #[arg(short, long, value_name = "METHOD")]
     pub(crate) method: Option<MethodArg>,
 
-    /// Ask for this characteristic only (repeatable)
+    /// Analyse this characteristic only (repeatable)
     #[arg(long = "characteristic", alias = "kc", value_name = "NAME")]
     pub(crate) characteristics: Vec<String>,
 
-    /// Take the values of this one of the study's [configurations]; `all` means each in turn, and in allocate all at once
+    /// Use this configuration of the study; `all`: each in turn, in allocate all at once
     #[arg(long, value_name = "NAME")]
     pub(crate) configuration: Option<String>,
 
-    /// Relative error of sigma that auto goes down to [default: that of the study, or 0.01]
+    /// Target relative error of sigma, for auto [default: that of the study, or 0.01]
     #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
     pub(crate) accuracy: Option<f64>,
 
@@ -49,7 +49,7 @@ pub(crate) struct HowArgs {
     #[arg(long, value_name = "E", value_parser = part, allow_negative_numbers = true, hide_short_help = true)]
     pub(crate) accuracy_yield: Option<f64>,
 
-    /// Evaluate the model at most N times; without it a method that needs more than 1000000 is refused
+    /// Evaluate the model at most N times; unless given, a method that needs more than 1000000 is refused
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     pub(crate) budget: Option<usize>,
 
@@ -61,7 +61,7 @@ pub(crate) struct HowArgs {
     #[arg(long, value_name = "PAIRS", hide_short_help = true)]
     pub(crate) pairs: Option<String>,
 
-    /// How six-n evaluates an interaction: two-point, or four-point as the papers do
+    /// Stencil of an interaction in six-n: two-point, or four-point as in the papers
     #[arg(long, value_name = "STENCIL", hide_short_help = true)]
     pub(crate) stencil: Option<StencilArg>,
 
@@ -73,7 +73,7 @@ pub(crate) struct HowArgs {
     #[arg(long, value_name = "WHICH", hide_short_help = true)]
     pub(crate) sensitivities: Option<SensitivitiesArg>,
 
-    /// Where derivatives come from [default: exact sensitivities where formulas give them, moments by differences]
+    /// Source of derivatives [default: exact sensitivities if formulas give them, moments by differences]
     #[arg(long, value_name = "SOURCE", hide_short_help = true)]
     pub(crate) derivatives: Option<DerivativesArg>,
 }

@@ -103,7 +103,7 @@ pub(crate) struct StudyCheck {
     method: Option<&'static str>,
     /// Fewest and most evaluations of the method.
     evaluations: Option<[usize; 2]>,
-    /// Program that an analysis starts, with its arguments; null where it starts none.
+    /// Program that an analysis starts, with its arguments; null if it starts none.
     program: Option<Vec<String>>,
     /// Unknowns and equations of an assembly in space; null of other studies.
     assembly: Option<MobilityReport>,

@@ -61,24 +61,24 @@ pub(crate) enum JournalCommand {
     Export {
         /// The journal
         file: PathBuf,
-        /// The model's number, where there are several
+        /// Number of the model, if the journal has several
         #[arg(long, value_name = "N")]
         model: Option<i64>,
         #[command(flatten)]
         output: OutputArgs,
     },
-    /// Forgets the answers of a model, when --yes or the terminal says so
+    /// Forgets the answers of a model, after --yes or a question on the terminal
     #[command(after_help = "Examples:\n  sensitol journal forget gap.journal.sqlite --model 2")]
     Forget {
         /// The journal
         file: PathBuf,
-        /// The model's number, where there are several
+        /// Number of the model, if the journal has several
         #[arg(long, value_name = "N", conflicts_with = "all")]
         model: Option<i64>,
         /// Forget every model
         #[arg(long)]
         all: bool,
-        /// Forget without being asked
+        /// Forget without a question
         #[arg(short, long)]
         yes: bool,
     },

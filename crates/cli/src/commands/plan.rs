@@ -32,12 +32,12 @@ pub(crate) struct PlanReport {
     count: &'static str,
     varying: usize,
     evaluations: usize,
-    /// The most evaluations of the model for one point, where a value is chosen from stock or an extreme over a motion is sought; null where it
-    /// is one.
+    /// Greatest number of evaluations for one point, if values are chosen from stock or extremes over a motion are sought; null if it is
+    /// one.
     evaluations_per_point: Option<usize>,
-    /// Evaluations where the program sends derivatives (`"gradients":true`); null where these save none, and for formulas.
+    /// Evaluations if the program sends derivatives (`"gradients":true`); null if these save none, and for formulas.
     with_gradients: Option<usize>,
-    /// The inputs over which the surface is fitted, where many dimensions drive few inputs of the program; null where these are the dimensions.
+    /// Inputs over which the surface is fitted, if many dimensions drive few inputs of the program; null if these are the dimensions.
     fitted_over: Option<FittedOver>,
     /// The fewest and the most, of a method that chooses as it goes.
     range: Option<[usize; 2]>,
@@ -46,14 +46,13 @@ pub(crate) struct PlanReport {
     /// Points of the largest batch: so many workers can be busy at a time.
     largest_batch: usize,
     stages: Vec<StageReport>,
-    /// The check points that verify it in the end, placed by the answers, at most; null where the model is sampled instead, and 0
-    /// where nothing is verified.
+    /// Greatest number of check points; null if the model is sampled instead, and 0 without verification.
     checks: Option<usize>,
-    /// Further points of the model in tails at whose limits check points refute the surface, at most; 0 where there are none.
+    /// Greatest number of further points in tails at whose limits check points refute the surface; 0 if there are none.
     tail_points: usize,
     /// Evaluations that replay answers of an external program in fresh processes, at most; 0 for other models.
     replays: usize,
-    /// Whether a search of the extremes follows, whose points are not known beforehand.
+    /// True if a search of the extremes follows, whose points depend on the answers.
     extremes: bool,
     dimensions: Vec<AxisReport>,
 }
@@ -65,7 +64,7 @@ struct FittedOver {
     dimensions: usize,
 }
 
-/// One batch; what a later one asks depends on the answers to those before.
+/// One batch; later batches depend on the answers to earlier ones.
 #[derive(Debug, Serialize, JsonSchema)]
 struct StageReport {
     evaluations: usize,
@@ -79,7 +78,7 @@ struct PurposeReport {
     purpose: &'static str,
 }
 
-/// Where one dimension is evaluated.
+/// Evaluations of one dimension.
 #[derive(Debug, Serialize, JsonSchema)]
 struct AxisReport {
     name: String,

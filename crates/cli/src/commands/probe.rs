@@ -45,7 +45,7 @@ struct AdapterReport {
 #[derive(Debug, Serialize, JsonSchema)]
 struct CheckReport {
     check: &'static str,
-    /// None where there were no values to check it with.
+    /// None if there were no values to check it with.
     passed: Option<bool>,
     verdict: &'static str,
     fault: Option<String>,
@@ -62,7 +62,7 @@ struct CharacteristicReport {
 #[derive(Debug, Serialize, JsonSchema)]
 struct StepReport {
     dimension: String,
-    /// In sigmas.
+    /// Values in sigmas.
     least_step: Option<f64>,
     reacts: bool,
 }

@@ -93,8 +93,8 @@ pub(crate) fn page(named: Option<&Path>) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// Returns the possible paths of the page: from the environment, beside the program, in the shared files of a package, and in the output
-/// of `web/build`.
+/// Returns the possible paths of the page: of the environment, beside the program, in a package's shared files, and in the output of
+/// `web/build`.
 fn places() -> Vec<PathBuf> {
     let named = std::env::var_os(VARIABLE).map(PathBuf::from);
     let program = std::env::current_exe().and_then(std::fs::canonicalize).ok();

@@ -452,6 +452,9 @@ pub fn examples(command: &Command) -> Vec<String> {
 /// Returns the meaning of an option and its default: `[default: ..]` within the help, or the parser's default.
 fn help(one: &Arg) -> (String, String) {
     let text = one.get_long_help().or(one.get_help()).unwrap().to_string();
+    // A long help begins with the short one, and says it again with more.
+    let short = one.get_help().map(|help| help.to_string()).unwrap_or_default();
+    let text = text.strip_prefix(&format!("{short}\n\n")).unwrap_or(&text).to_owned();
     let of_parser: Vec<String> = one.get_default_values().iter().map(|value| code(value.to_str().unwrap())).collect();
     match text.split_once(" [default: ") {
         Some((before, rest)) if one.get_action().takes_values() => {

@@ -9,9 +9,10 @@ use super::command::sensitol;
 use super::reference::{anchor, once};
 
 const INTRODUCTION: &str = "# JSON reports\n\n\
-    `--json` prints one object, or a list where a command says so. This page is made from the JSON Schema that `sensitol schema --report` prints,\n\
-    which has the whole description of each key.\n\n\
-    - A line has the key, its type and its meaning. `?` after a type means that the value may be `null`; objects are a list of them.\n\
+    `--json` prints one object, or a list if a command says so. This page is made from the JSON Schema that `sensitol schema --report` prints,\n\
+    with the type and the description of every key.\n\n\
+    - A line has the key, its type and its meaning. `?` means that the value may be `null`; objects are a list of them.\n\
+    - Objects within objects have their keys only. Parentheses have the keys of a further object.\n\
     - Numbers have all their digits. An unknown value is `null`, never 0; no key is left out.\n\
     - `schema` is the version of the shape. Keys are added without a new version; a key that changes its meaning or is removed raises it.\n\
     - Several studies in one call give a list: each report has the key `study`, or it is `{ \"study\": .., \"error\": .., \"errors\": [{ .. }] }`.\n\
@@ -49,7 +50,7 @@ fn name(value: &Value) -> Option<&str> {
 struct Page<'s> {
     defs: &'s Value,
     text: String,
-    /// Tables of keys that have been shown, with their headings.
+    /// Objects that have been shown, with their headings.
     done: Vec<(Vec<&'s Value>, String)>,
     /// Lines of keys that have been shown, with their headings.
     lines: BTreeMap<String, String>,
@@ -96,22 +97,20 @@ impl<'s> Page<'s> {
         for (key, values) in keys {
             let mut kind = self.kind(&values);
             let objects: Vec<&'s Value> = values.iter().copied().flat_map(|value| self.objects(value)).collect();
-            if !objects.is_empty() {
-                let heading = self.done.iter().find(|(known, _)| *known == objects).map(|(_, heading)| heading.clone());
-                let heading = heading.unwrap_or_else(|| {
-                    let heading = format!("{path}: {key}");
-                    self.done.push((objects.clone(), heading.clone()));
-                    below.push((heading.clone(), objects));
-                    heading
-                });
-                let target = anchor(&heading);
-                kind = match kind.contains("list of object") {
-                    true => kind.replacen("list of object", &format!("[objects](#{target})"), 1),
-                    false => kind.replacen("object", &format!("[object](#{target})"), 1),
-                };
+            let mut within = String::new();
+            if let Some((_, place)) = self.done.iter().find(|(known, _)| *known == objects) {
+                kind = linked(&kind, place);
+            } else if !objects.is_empty() && path.contains(": ") {
+                within = format!(": {}", self.names(&objects));
+                self.done.push((objects, path.to_owned()));
+            } else if !objects.is_empty() {
+                let heading = format!("{path}: {key}");
+                kind = linked(&kind, &heading);
+                self.done.push((objects.clone(), heading.clone()));
+                below.push((heading, objects));
             }
             let line = format!("- `{key}`: {kind}. {}", self.about(values[0])).trim_end_matches(" .").to_owned();
-            rows.push((key.to_owned(), line));
+            rows.push((key.to_owned(), line.trim_end_matches('.').to_owned() + &within + "."));
         }
         self.text += &once(rows, path, &mut self.lines);
         self.text.push('\n');
@@ -119,6 +118,21 @@ impl<'s> Page<'s> {
             write!(self.text, "### {heading}\n\n").unwrap();
             self.section(&objects, &heading);
         }
+    }
+
+    /// Lists the keys of these objects, and of the objects within them.
+    fn names(&self, objects: &[&'s Value]) -> String {
+        let mut keys: BTreeMap<&str, Vec<&'s Value>> = BTreeMap::new();
+        for (key, value) in objects.iter().flat_map(|object| object["properties"].as_object().unwrap()) {
+            keys.entry(key).or_default().push(value);
+        }
+        let name = |(key, values): (&&str, &Vec<&'s Value>)| {
+            let null = if self.kind(values).ends_with('?') { "?" } else { "" };
+            let within: Vec<&'s Value> = values.iter().copied().flat_map(|value| self.objects(value)).collect();
+            let known = within.is_empty() || self.done.iter().any(|(known, _)| *known == within);
+            if known { format!("`{key}{null}`") } else { format!("`{key}{null}` ({})", self.names(&within)) }
+        };
+        keys.iter().map(name).collect::<Vec<_>>().join(", ")
     }
 
     /// Returns the first sentence of a description, with JSON words.
@@ -178,6 +192,15 @@ impl<'s> Page<'s> {
             other => other.to_owned(),
         };
         types.into_iter().map(named).collect()
+    }
+}
+
+/// Returns a kind whose word for objects leads to the table of their keys.
+fn linked(kind: &str, heading: &str) -> String {
+    let target = anchor(heading);
+    match kind.contains("list of object") {
+        true => kind.replacen("list of object", &format!("[objects](#{target})"), 1),
+        false => kind.replacen("object", &format!("[object](#{target})"), 1),
     }
 }
 

@@ -212,7 +212,7 @@ impl Guard {
 
 #[cfg(unix)]
 impl Drop for Guard {
-    /// Kills the shell, which must not see its pipe close.
+    /// Kills the shell before its pipe closes.
     fn drop(&mut self) {
         let _ = self.0.kill();
         let _ = self.0.wait();

@@ -17,7 +17,7 @@ const PART: f64 = 0.05;
 const LEAST: usize = 5;
 /// Number of answers that are replayed in addition, independently of their score.
 const RANDOM: usize = 2;
-/// Greatest number of replayed answers: of flips in 5 % of the points they find one with a probability of 95 %, since 0.95^59 < 0.05.
+/// Greatest number of replayed answers. They find flips in 5 % of the points with a probability of 95 %, since 0.95^59 < 0.05.
 const MOST: usize = 59;
 /// Fraction of the median effect in the denominator, which keeps a quotient finite.
 const FLOOR: f64 = 0.02;

@@ -224,8 +224,8 @@ impl Pool {
         same
     }
 
-    /// Answers to the points of each way, one at a time in their order, each way in a lane of its own; None for a way whose end was not
-    /// reached. Returns None if a stop came first.
+    /// Answers to the points of each way, in order, each way in its own lane; None for a way whose end was not reached. Returns None if a
+    /// stop came first.
     fn side_by_side(
         &mut self,
         ways: &[Vec<Vec<f64>>],

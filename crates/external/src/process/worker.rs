@@ -8,7 +8,7 @@ use super::child::Child;
 use super::protocol::Line;
 use super::sentinel::{SENTINEL, interval};
 
-/// Timeouts for which signs of life keep a point that has not started: 17 hours at the default timeout, more than a job waits in most queues.
+/// Timeouts for which signs of life keep a point that has not started: 17 hours by default, longer than most queues.
 const WAITS: u32 = 1000;
 
 /// Abilities that a program declares in `ready`, besides its window.
@@ -148,8 +148,8 @@ impl Worker {
     }
 }
 
-/// Deadline of the points that have not started: a timeout after the last answer or sign of life, and at the latest [`WAITS`] timeouts
-/// after the oldest was sent. Returns None if all have started.
+/// Deadline of the points that have not started: a timeout after the last sign of life, at the latest [`WAITS`] timeouts after the oldest
+/// was sent. Returns None if all have started.
 fn waiting_deadline(under_way: &VecDeque<Sent>, since: Instant, timeout: Duration) -> Option<Instant> {
     let oldest = under_way.iter().filter(|sent| sent.started.is_none()).map(|sent| sent.sent).min()?;
     let last = oldest.checked_add(timeout.saturating_mul(WAITS));
@@ -160,7 +160,7 @@ fn waiting_deadline(under_way: &VecDeque<Sent>, since: Instant, timeout: Duratio
 mod tests {
     use super::*;
 
-    /// A program that says for ever that it is alive keeps a point for a thousand timeouts, and no longer.
+    /// A program that reports life without end keeps a point for a thousand timeouts, and no longer.
     #[test]
     fn signs_of_life_have_an_end() {
         let (sent, timeout) = (Instant::now(), Duration::from_secs(2));

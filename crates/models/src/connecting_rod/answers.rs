@@ -1,4 +1,4 @@
-//! The outputs of a connecting rod: maxima over the crank angle first, and what follows from them.
+//! The outputs of a connecting rod: maxima over the crank angle first, then the figures that follow from them.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Least and greatest yield over all distributions that agree with what is known of an input.
+//! Least and greatest yield over all distributions that agree with the known facts of an input.
 //!
 //! A supplier promises a band, and perhaps a mean within a range or a sigma at most. Of all distributions that keep the promise, those with
 //! the least and the greatest yield put their mass on a few points (Karlin and Studden, Tchebycheff Systems (1966); Smith, Generalized
@@ -36,8 +36,7 @@ const SPLIT: usize = 4;
 const MOST: usize = 60_000;
 /// Most cells of a mixture of uniform distributions, whose mean shares over a cell are bounded in many slices.
 const MOST_OF_MIXTURES: usize = 1 << 10;
-/// Rounds in a row in which the difference of both ends hardly falls, after which cells are no longer split: the bounds over a cell are what
-/// keeps them apart then.
+/// Successive rounds without progress after which cells are no longer split: the bounds over a cell keep the ends apart then.
 const STALLED: usize = 3;
 /// Part of the difference of both ends above which it hardly falls.
 const HARDLY: f64 = 0.9;

@@ -2,7 +2,7 @@
 
 use crate::dimension::{BandPromise, Dimension};
 
-/// Band of an input, and what else is promised of its distribution.
+/// Band of an input, and further promises on its distribution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistributionPromise {
     band: [f64; 2],

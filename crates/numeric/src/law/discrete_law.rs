@@ -147,8 +147,8 @@ pub(super) fn largest_jump(surface: &Surface) -> f64 {
     Groups::of_surface(surface).map_or(0.0, |groups| groups.likeliest())
 }
 
-/// Effect of all inputs with a density at three of their sigmas, in sigmas of the surface, below which the transform does not resolve the
-/// edges of clusters. At 7e-6 it resolved them to 1e-11, at 1.2e-6 not at all.
+/// Least effect of all inputs with a density, at three sigmas, with which the transform resolves the edges of clusters; in sigmas of the
+/// surface. At 7e-6 it resolved them to 1e-11, at 1.2e-6 not at all.
 const NARROW: f64 = 3e-6;
 /// Distance from a cluster, in sigmas, beyond which a tail is that between the clusters. It was at most 8e-6.
 const BLUR: f64 = 2e-5;
@@ -165,7 +165,7 @@ pub(super) fn blur(surface: &Surface, sigma: f64) -> Option<f64> {
     (spread < NARROW * sigma).then_some(BLUR * sigma)
 }
 
-/// Effect of an input at its ends, or at three sigmas where these lie farther out.
+/// Effect of an input at its ends, or at three sigmas if these lie farther out.
 fn most_effect(surface: &Surface, input: usize) -> f64 {
     let reach = |j: usize| surface.inputs[j].ends.iter().fold(1.0, |most: f64, end| most.max(end.abs())).min(3.0);
     let powers: f64 = (1..).zip(&surface.parts[input][1..]).map(|(power, c)| c.abs() * reach(input).powi(power)).sum();

@@ -316,8 +316,7 @@ impl Tilts {
     }
 }
 
-/// Starts of mean fields to either side: both ends of the eigenvector of the products with the least and with the greatest eigenvalue, if
-/// that has the sign of the side.
+/// Starts of mean fields to either side: both ends of the eigenvectors of the extreme eigenvalues that have the sign of the side.
 fn starts(columns: &[Vec<(usize, f64)>], images: &[Vec<(usize, f64)>]) -> [Vec<Vec<f64>>; 2] {
     /// Greatest coordinate of a start, in sigmas.
     const REACH: f64 = 2.0;

@@ -90,8 +90,7 @@ fn tails(limited: &[(&SurfaceLaw, SpecLimits)]) -> Vec<(Limit, LawFigure)> {
     limited.iter().enumerate().flat_map(of).flatten().collect()
 }
 
-/// Mean number of exceeded limits beyond the first: 0 for one characteristic, exact for two sums of normal inputs and for lists of values,
-/// sampled otherwise.
+/// Mean number of exceeded limits beyond the first. It is exact for two sums of normal inputs and for lists of values, sampled otherwise.
 ///
 /// ```text
 /// E[ (number broken - 1)+ ] = sum of the tails * mean(w (number broken - 1)+) / mean(w number broken)

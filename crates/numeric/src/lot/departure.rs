@@ -1,4 +1,4 @@
-//! Name of a shape that is not normal: the alternative with the greatest likelihood, less what its parameters cost.
+//! Name of a shape that is not normal: the alternative with the greatest likelihood after the penalty for its parameters.
 //!
 //! Candidates are a mixture of two normal distributions of one sigma (two tools, two cavities), and a normal distribution cut at one end
 //! or both (parts that were sorted out). Each is fitted by maximum likelihood and pays `ln(n)/2` for each parameter beyond two (G. Schwarz,

@@ -1,4 +1,4 @@
-//! Statistics of a measured lot: figures with intervals, tests against what was assumed, and variance components.
+//! Statistics of a measured lot: figures with intervals, tests of the assumptions, and variance components.
 //!
 //! Intervals hold with 95 % each, by themselves. Tests have p-values, and [`holm`] makes a family of them hold one level together.
 //! Values are in the order in which the parts were measured.

@@ -34,8 +34,7 @@ impl LotTest {
     }
 }
 
-/// Adjusts the p-values of a family of tests: those at most `level` afterwards are wrong together with at most the probability `level`,
-/// however the tests depend on each other.
+/// Adjusts the p-values of a family of tests: with any dependence, those up to `level` hold a false alarm with at most that probability.
 ///
 /// Source: S. Holm, A simple sequentially rejective multiple test procedure, Scandinavian Journal of Statistics 6 (1979).
 ///

@@ -45,8 +45,7 @@ struct Piece {
     from: f64,
     /// Value of log p in the middle of the panel.
     log: f64,
-    /// Mass beyond the middle, relative to the density there: the mass from the middle to the outer end, plus the density at that end times
-    /// Mills' ratio.
+    /// Mass beyond the middle, relative to the density there: that up to the outer end, plus the density at that end times Mills' ratio.
     beyond: f64,
     /// Logarithm of the mass beyond the inner end of the panel.
     log_mass: f64,

@@ -85,7 +85,7 @@ pub fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
     ]
 }
 
-/// Standard error of a value with a 95 % interval: half of the distance to the farther end, so that two errors extend to both ends.
+/// Standard error of a value with a 95 % interval: half of the distance to the farther end.
 pub fn one_error(value: f64, [low, high]: [f64; 2]) -> f64 {
     0.5 * (high - value).max(value - low)
 }
@@ -149,9 +149,9 @@ pub fn clopper_pearson(hits: f64, n: f64) -> [f64; 2] {
     [low, high]
 }
 
-/// 95 % interval of a share by weighted points: that of Clopper and Pearson for the number of plain points with the same scatter (Korn and
-/// Graubard 1998). Points may all miss a share. That share is bounded by the upper end for no hit among `1/one` points, with `one` the
-/// weight of a single point.
+/// 95 % interval of a share by weighted points: Clopper and Pearson for the number of plain points with the same scatter (Korn and Graubard
+/// 1998). Points may all miss a share. That share is bounded by the upper end for no hit among `1/one` points, with `one` the weight of a
+/// single point.
 ///
 /// `scatter` is the standard error from the differences between the points; it is 0 if all of them agree.
 ///

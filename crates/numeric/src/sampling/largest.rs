@@ -156,9 +156,9 @@ impl LargestShare {
         Self { largest: largest.min(1.0), watched: watched.min(1.0) }
     }
 
-    /// Weight of the standard error of independent points as a lower bound of that of a better design or of a fitted control: 0 up to 0.25,
-    /// 1 from 0.5 on. Where a few points decide, strata and regressions fit just these points. Their errors then are too small, and the
-    /// points that the sample lacks are in none.
+    /// Weight of the standard error of independent points as lower bound of that of a better design: 0 up to 0.25, 1 from 0.5 on. Where a
+    /// few points decide, strata and regressions fit just these points. Their errors then are too small, and the points that the sample
+    /// lacks are in none.
     pub fn independence(self) -> f64 {
         ((self.watched - SPREAD[0]) / (SPREAD[1] - SPREAD[0])).clamp(0.0, 1.0)
     }

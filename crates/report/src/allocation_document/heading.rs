@@ -1,4 +1,4 @@
-//! The lines at the head of an allocation: what it came to, what it took, and what proves it.
+//! The lines at the head of an allocation: result, effort and proof.
 
 use super::super::allocation::AllocationReport;
 use super::super::head;

@@ -149,7 +149,7 @@ fn risk(one: &CharacteristicAnalysis, share: fn(&InspectionRisks) -> Option<Esti
     Some(share(one.distribution.inspection.as_ref()?)?.value)
 }
 
-/// Yield with its error, or the least one over all distributions where one is unknown.
+/// Yield with its error, or the least one over all distributions if one is unknown.
 fn free_or_rejects(one: &CharacteristicAnalysis) -> String {
     let free = one.distribution.distribution_free_yield.as_ref().and_then(least_yield);
     free.or_else(|| one.rejects().with_error()).unwrap_or_else(|| "unknown".to_owned())

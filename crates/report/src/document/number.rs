@@ -77,8 +77,7 @@ const MOST_DIGITS: i32 = 6;
 /// Least and most digits of sigma that a value beside it resolves. Three digits tell a mean from a limit to a hundredth of sigma.
 const SIGMA_DIGITS: [i32; 2] = [3, 5];
 
-/// Returns the decimals of a value beside its sigma, or None if that needs an exponent: six significant digits, but at least three
-/// and at most five digits of sigma.
+/// Returns the decimals of a value beside its sigma: six significant digits, but three to five of sigma; None if that needs an exponent.
 fn decimals_beside(value: f64, sigma: f64) -> Option<usize> {
     let [least, most] = SIGMA_DIGITS.map(|digits| decimals(sigma, digits));
     let most = most?;

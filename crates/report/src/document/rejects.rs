@@ -110,8 +110,7 @@ impl Rejects {
         sides.join(", ")
     }
 
-    /// Formats the rejects below (0) or above (1) in parts per million, by their own interval if it is known, else by the error of the
-    /// sum.
+    /// Formats the rejects below (0) or above (1) in parts per million, by their own interval, or by the error of the sum.
     fn side(self, side: usize) -> Option<String> {
         let share = [self.below, self.above][side]?;
         let Some([low, high]) = self.intervals[side] else { return Some(self.ppm(share)) };

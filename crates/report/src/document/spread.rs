@@ -367,7 +367,7 @@ impl<'c> DensityPlot<'c> {
 /// A plot with its heights: from `top` down to its axis at `base`.
 struct DensityDrawing<'c> {
     plot: DensityPlot<'c>,
-    /// The best density along the scale; empty where there is none.
+    /// The best density along the scale; empty if there is none.
     points: Vec<(f64, f64)>,
     /// The density at the top.
     most: f64,
@@ -414,7 +414,7 @@ impl<'c> DensityDrawing<'c> {
         })
     }
 
-    /// Fills the density, and what lies beyond the limits.
+    /// Fills the density, and its parts beyond the limits.
     fn areas(&self, svg: &mut String, line: Option<&str>) {
         let (width, base) = (self.plot.frame.width, self.base);
         if let (Some(line), None) = (line, self.plot.bins) {
@@ -520,7 +520,7 @@ impl<'c> DensityDrawing<'c> {
     }
 }
 
-/// A range as a dimension line, with its name in a gap of the line or beside it; what lies beyond a limit stands out.
+/// A range as a dimension line, with its name in a gap of the line or beside it; parts beyond a limit stand out.
 fn range(scale: &Extent, limits: [Option<f64>; 2], (name, [from, to]): (&str, [f64; 2]), y: f64) -> String {
     let [a, b] = [scale.at(from), scale.at(to)];
     let wide = LETTER * name.chars().count() as f64 + APART;

@@ -143,7 +143,7 @@ impl Diagram {
         bars
     }
 
-    /// Adds the row of what is not resolved.
+    /// Adds the row of the unresolved part.
     fn add_open(&mut self, open: &Open) {
         let (bars, amount, cells, spread) = match *open {
             Open::LeftOut(share) => {

@@ -28,7 +28,7 @@ fn one(error: &StudyError) -> Value {
     })
 }
 
-/// Refusal of a run that would start a program without being asked to.
+/// Refusal of a run that would start a program without permission.
 pub(super) fn not_asked(program: &[String]) -> Value {
     let program = program.join(" ");
     json!({

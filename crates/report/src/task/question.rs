@@ -35,9 +35,9 @@ pub enum Asked {
         samples: Option<u64>,
         /// Sampler that draws them.
         sampler: Option<SamplerName>,
-        /// Until sigma has this relative error.
+        /// Target relative error of sigma.
         until: Option<f64>,
-        /// Until the yield has this error.
+        /// Target error of the yield.
         until_yield: Option<f64>,
         /// True if the fitted surface is a control variate.
         #[serde(default)]
@@ -47,7 +47,7 @@ pub enum Asked {
     Rare {
         /// Number of points for each characteristic.
         samples: Option<u64>,
-        /// Until a probability has this relative error.
+        /// Target relative error of a probability.
         until: Option<f64>,
     },
     /// Every method beside a reference.
@@ -72,7 +72,7 @@ pub enum Asked {
         nominal_bounds: Vec<(String, [f64; 2])>,
         /// Points of the front of cost against the requirements.
         front: Option<usize>,
-        /// Points of the model that confirm what was found.
+        /// Points of the model that confirm the result.
         confirm: Option<u64>,
         /// Relative costs in place of the study's own.
         cost: Option<CostName>,
@@ -209,12 +209,12 @@ impl StudyTask<'_> {
         }
     }
 
-    /// Counts the points of a run that tells of its pace.
+    /// Counts the points of a run that reports its pace.
     fn count(&self, pace: Pace) {
         (self.counted)(pace.samples, pace.expected as u64);
     }
 
-    /// Analyses the study, with densities and what a page can try.
+    /// Analyses the study, with densities and the data of a what-if.
     fn analyze(&self) -> Result<TaskReport, Box<AnyError>> {
         let (study, problem) = (self.study, &self.study.problem);
         let mut options = study.options.clone();

@@ -14,7 +14,7 @@ use sensitol_models::{ALL, Model};
 use sensitol_study::AnyError;
 use sensitol_study::{Study, StudyError, StudyText};
 
-/// A study, and what is asked of it.
+/// A study, and the question about it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Task {

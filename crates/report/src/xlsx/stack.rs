@@ -449,7 +449,7 @@ impl TotalFormulas {
     }
 }
 
-/// Cpk where there are limits and it is known.
+/// Cpk if there are limits and it is known.
 fn cpk(one: &CharacteristicAnalysis) -> Option<f64> {
     one.distribution.capability.as_ref()?.cpk
 }

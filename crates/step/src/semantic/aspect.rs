@@ -1,4 +1,4 @@
-//! Shape aspects: which faces belong to what a tolerance, datum or dimension names.
+//! Shape aspects: the faces that a tolerance, datum or dimension refers to.
 
 use std::collections::{HashMap, HashSet};
 

@@ -315,7 +315,7 @@ fn pairs(keys: &[KeyText]) -> String {
     keys.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Remarks on what the keys of a tolerance do not hold.
+/// Remarks on parts of a tolerance that its keys do not cover.
 fn notes(tolerance: &GeometricTolerance) -> Vec<String> {
     let mut found = Vec::new();
     if !tolerance.modifiers.is_empty() {

@@ -376,7 +376,7 @@ fn process_offer(process: &ProcessEntry, span: Range<usize>, key: String) -> Res
     }
 }
 
-/// The line of a dimension that says of how its parts lie what a process does, and nothing else.
+/// Line of a dimension with the distribution keys of a process, and no others.
 fn spread_of(process: &ProcessEntry) -> DimensionEntry {
     DimensionEntry {
         distribution: process.distribution.clone(),

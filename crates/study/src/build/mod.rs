@@ -1,4 +1,4 @@
-//! From the entries of a study to a problem.
+//! Conversion of the entries of a study to a problem.
 
 pub(crate) mod compensators;
 pub(crate) mod correlation;

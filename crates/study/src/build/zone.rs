@@ -148,7 +148,7 @@ fn follows(line: &DimensionEntry, law: &JointLaw, coordinate: usize) -> bool {
     }
 }
 
-/// Marks the dimensions of discs and rims as one zone, so that the worst case does not put a point at the ends of both coordinates.
+/// Marks the dimensions of discs and rims as one zone, whose worst case has no point at the ends of both coordinates.
 pub(crate) fn zoned(dimensions: Vec<Dimension>, blocks: &[Block]) -> Vec<Dimension> {
     let round = |block: &&Block| matches!(block.law, Some(JointLaw::Disc | JointLaw::Rim));
     let zone = |dimension: &Dimension| {

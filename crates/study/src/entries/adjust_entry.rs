@@ -33,10 +33,10 @@ pub(crate) struct AdjustEntry {
     pub(crate) range: Option<Spanned<[f64; 2]>>,
     /// The characteristic that is measured on the assembly.
     pub(crate) to: Spanned<String>,
-    /// The value that it should have; the middle of its limits unless given.
+    /// Target of the characteristic; the middle of its limits unless given.
     pub(crate) target: Option<Spanned<f64>>,
-    /// The form of the characteristic along the dimension: a linear one is tried at two values of the stock, a monotone one is bisected. A formula that
-    /// is linear needs no word.
+    /// Form of the characteristic along the dimension: linear takes two values of the stock, monotone a bisection. Linear formulas do not
+    /// need it.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::stock_responses(), "default" = registry::stock_responses()[0])))]
     pub(crate) response: Option<Spanned<String>>,
 }
@@ -57,7 +57,7 @@ pub(crate) struct MotionEntry {
     pub(crate) from: Spanned<f64>,
     /// Last value of the motion.
     pub(crate) to: Spanned<f64>,
-    /// Number of equal steps at which the motion is looked at, before the lowest places are refined.
+    /// Number of equal steps of the motion, before the lowest values are refined.
     #[cfg_attr(feature = "schema", schemars(extend("default" = sensitol::assembly::Motion::STEPS)))]
     pub(crate) steps: Option<Spanned<u64>>,
 }

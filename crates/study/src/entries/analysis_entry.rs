@@ -31,15 +31,14 @@ pub(crate) struct AnalysisEntry {
     pub(crate) accuracy_kurtosis: Option<Spanned<f64>>,
     /// Target error of the yield, a share such as 1e-5, for auto.
     pub(crate) accuracy_yield: Option<Spanned<f64>>,
-    /// Most evaluations that may be spent; a method that needs more is an error, auto stays below. Without it a method that needs more
-    /// than 1000000 is an error.
+    /// Greatest number of evaluations. A method that needs more is an error; auto stays below. Unless given, a method may need 1000000.
     pub(crate) budget: Option<Spanned<u64>>,
     /// Evaluate at so many sigma on either side, in place of the nodes that suit each distribution.
     pub(crate) step: Option<Spanned<f64>>,
     /// The interactions that six-n examines: strongest, adjacent, or a list of pairs of names.
     pub(crate) pairs: Option<Spanned<PairsEntry>>,
-    /// Pairs of names of dimensions whose product a formula has, such as size and place of a bonus: every method of second order takes in
-    /// their exact mixed derivative, without an evaluation. Geometric elements write their own.
+    /// Pairs of dimensions whose product is in a formula, such as size and place of a bonus. Methods of second order use their exact mixed
+    /// derivative without an evaluation. Geometric elements add their own pairs.
     pub(crate) products: Option<Spanned<Vec<Product>>>,
     /// Stencil by which six-n evaluates an interaction.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::stencils())))]
@@ -57,23 +56,23 @@ pub(crate) struct AnalysisEntry {
     /// True if the extremes in the box of the tolerance bands are searched too.
     #[cfg_attr(feature = "schema", schemars(extend("default" = false)))]
     pub(crate) extremes: Option<bool>,
-    /// Seed of random numbers, for what draws some.
+    /// Seed of the random numbers.
     #[cfg_attr(feature = "schema", schemars(extend("default" = Options::SEED)))]
     pub(crate) seed: Option<Spanned<u64>>,
-    /// The share of assemblies that must keep the limits of all characteristics at once, between 0 and 1; what --check looks at too, and what
-    /// allocate keeps.
+    /// Least share of assemblies within the limits of all characteristics at once, between 0 and 1; --check judges it, and allocate keeps
+    /// it.
     pub(crate) target_joint_yield: Option<Spanned<f64>>,
-    /// The factor of the inflated RSS, or "modified": 1 + (W - R)/(2 R (sqrt n - 1)) with the worst case W and the RSS R of n dimensions.
+    /// Factor of the inflated RSS, or "modified": 1 + (W - R)/(2 R (sqrt n - 1)), with worst case W and RSS R.
     #[cfg_attr(feature = "schema", schemars(extend("default" = 1.5)))]
     pub(crate) rss_factor: Option<Spanned<FactorEntry>>,
     /// The part of every half band by which its mean may be off in the mean-shift RSS, from 0 to 1.
     #[cfg_attr(feature = "schema", schemars(extend("default" = 0.5)))]
     pub(crate) mean_shift: Option<Spanned<f64>>,
-    /// The share that coverage intervals and expanded uncertainties hold, from 0.5 to below 1: every characteristic then has the interval with
-    /// equal tails and the shortest.
+    /// Share of coverage intervals and expanded uncertainties, from 0.5 to below 1. Each characteristic then has the interval with equal
+    /// tails and the shortest one.
     pub(crate) coverage: Option<Spanned<f64>>,
-    /// Number of check points of a costly model that verify every figure; a cheap model is sampled instead. Without it they are 12 near the
-    /// means and 6 to 18 where decisions fall, and up to 8 more if the surface is refuted. 0 for no verification.
+    /// Number of check points of a costly model, 0 for none; a cheap model is sampled instead. Unless given: 12 near the means, 6 to 18
+    /// where decisions fall, and up to 8 more if they refute the surface.
     pub(crate) verify: Option<u64>,
 }
 

@@ -39,9 +39,8 @@ pub(crate) struct JointEntry {
     pub(crate) of: Spanned<Vec<Spanned<String>>>,
     /// A CSV file whose rows are one part each. A dimension without a `column` takes that of its own name.
     pub(crate) measured: Option<Spanned<String>>,
-    /// Zone in which the point of two dimensions has the same probability everywhere: in a disc, on its rim, or in a diamond,
-    /// |x|/X + |y|/Y <= 1. Of three dimensions: in an octahedron, a bicone about the first one, or a ball. Their tolerances are the zone's half
-    /// widths.
+    /// Zone with an even probability. Two dimensions: a disc, its rim, or a diamond, |x|/X + |y|/Y <= 1. Three: an octahedron, a bicone about
+    /// the first one, or a ball. Tolerances are half widths of the zone.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::zones())))]
     pub(crate) law: Option<Spanned<String>>,
 }

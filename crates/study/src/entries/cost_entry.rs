@@ -21,10 +21,10 @@ pub(crate) struct CostEntry {
     /// The cost over the half band T: reciprocal a + b/T, reciprocal-power a + b/T^k, exponential a + b exp(-T/c).
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::cost_models())))]
     pub(crate) model: Option<Spanned<String>>,
-    /// The cost that no tolerance saves.
+    /// Constant part of the cost.
     #[cfg_attr(feature = "schema", schemars(extend("default" = 0)))]
     pub(crate) a: Option<Spanned<f64>>,
-    /// The factor of what falls as the tolerance opens.
+    /// Factor of the part that falls with a wider tolerance.
     pub(crate) b: Option<Spanned<f64>>,
     /// Exponent of a reciprocal power.
     pub(crate) k: Option<Spanned<f64>>,
@@ -42,14 +42,15 @@ pub(crate) struct CostEntry {
     pub(crate) step: Option<Spanned<f64>>,
     /// Tolerances are standard grades of ISO 286-1 for the nominal size, from the first to the last: ["IT6", "IT10"]; half bands are half of them.
     pub(crate) grades: Option<Spanned<[String; 2]>>,
-    /// The end of the band that stays where it is, `lower` or `upper`; that of a fit unless given, and the middle otherwise.
+    /// End of the band that does not move, `lower` or `upper`; unless given that of a fit, else the middle.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["lower", "upper", "middle"])))]
     pub(crate) fixed_side: Option<Spanned<String>>,
-    /// The dimensions of a zone, each with its half band per unit of the half band T. One without a tolerance has that times T as nominal value.
+    /// The dimensions of a zone, each with its half band per unit of the half band T. The nominal value of a dimension without tolerance is
+    /// this factor times T.
     pub(crate) of: Option<Spanned<Entries<f64>>>,
     /// The unit of T for a zone.
     pub(crate) unit: Option<Spanned<String>>,
-    /// The cost of a wider zone that this one refines: its T is never above that.
+    /// The wider zone that this one refines; T is never above the T of that zone.
     pub(crate) within: Option<Spanned<String>>,
     /// The dimension with which this one shares tolerance and process; each part costs.
     pub(crate) same_as: Option<Spanned<String>>,
@@ -81,15 +82,15 @@ pub(crate) struct ProcessEntry {
     pub(crate) tolerance: Option<Spanned<f64>>,
     /// The cost of a part.
     pub(crate) cost: Option<Spanned<f64>>,
-    /// The machine that it needs: its cost in [setup] is paid once for all dimensions that need it.
+    /// Machine of the process; its cost in [setup] is paid once for all dimensions.
     pub(crate) machine: Option<Spanned<String>>,
     /// The cost over a range of half bands, as of a dimension.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::cost_models())))]
     pub(crate) model: Option<Spanned<String>>,
-    /// The cost that no tolerance saves.
+    /// Constant part of the cost.
     #[cfg_attr(feature = "schema", schemars(extend("default" = 0)))]
     pub(crate) a: Option<Spanned<f64>>,
-    /// The factor of what falls as the tolerance opens.
+    /// Factor of the part that falls with a wider tolerance.
     pub(crate) b: Option<Spanned<f64>>,
     /// Exponent of a reciprocal power.
     pub(crate) k: Option<Spanned<f64>>,
@@ -99,12 +100,12 @@ pub(crate) struct ProcessEntry {
     pub(crate) min: Option<Spanned<f64>>,
     /// Greatest half band that it holds.
     pub(crate) max: Option<Spanned<f64>>,
-    /// A line of [processes], whose keys count where this one does not have them.
+    /// A line of [processes] with the keys that are left out here.
     #[serde(default, rename = "process")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub(crate) _process: Option<IgnoredAny>,
-    /// Distribution of its parts, as of a dimension; beside `tolerance`. Where one process of a list says how its parts lie, each does, and
-    /// what the dimension says of that does not count.
+    /// Distribution of its parts, as of a dimension; beside `tolerance`. If one process of a list has a distribution, each has its own, and
+    /// that of the dimension is not used.
     #[serde(default, deserialize_with = "distribution")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::word_or_table"))]
     pub(crate) distribution: Option<Spanned<DistributionEntry>>,
@@ -116,7 +117,7 @@ pub(crate) struct ProcessEntry {
     pub(crate) cp: Option<Spanned<f64>>,
     /// Capability with the place of the mean, as of a dimension.
     pub(crate) cpk: Option<Spanned<f64>>,
-    /// Beside cp and cpk "+" or "-": where the mean lies.
+    /// Side of the mean beside cp and cpk, "+" or "-".
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["+", "-"])))]
     pub(crate) side: Option<Spanned<String>>,
     /// Greatest distance of the mean of a lot from the mean of all.

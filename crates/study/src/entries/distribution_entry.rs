@@ -43,11 +43,11 @@ pub(crate) struct DistributionEntry {
     pub(crate) below: Option<Spanned<f64>>,
     /// Sigma of a split normal distribution above the nominal; without it that of the upper deviation by sigmas.
     pub(crate) above: Option<Spanned<f64>>,
-    /// Normal scores of a table of quantiles, ascending: the value at the score z has the probability Phi(z) below it. Between two scores the
-    /// value is a monotone cubic of the score, not a straight line: two unlike halves are a split-normal distribution.
+    /// Normal scores of a table of quantiles, ascending: the value at the score z has the probability Phi(z) below it. Between two scores
+    /// the value is a monotone cubic of the score.
     pub(crate) scores: Option<Spanned<Vec<f64>>>,
-    /// Values of the dimension at the scores of a table of quantiles, ascending; the first and last are its ends. They hold for the nominal that
-    /// the dimension needs beside them, which the nominal point of the report has, and its mean follows from them.
+    /// Values of the dimension at the scores of a table of quantiles, ascending; the first and last are its ends. The dimension needs a
+    /// nominal too. Its mean follows from the table.
     pub(crate) values: Option<Spanned<Vec<f64>>>,
     /// Least and greatest mean of an unknown distribution, as values of the dimension; the ends of the band unless given.
     pub(crate) mean: Option<Spanned<[f64; 2]>>,
@@ -61,7 +61,7 @@ pub(crate) struct DistributionEntry {
     pub(crate) unimodal: Option<Spanned<bool>>,
 }
 
-/// A part of a mixture: a weight, and what of a dimension is its own.
+/// A part of a mixture: a weight, and the keys of a dimension that differ.
 #[derive(Debug, Clone, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table such as { weight = 0.6, shift = 0.02, sigma = 0.01 }")]

@@ -40,8 +40,7 @@ pub(crate) struct StudyFile {
     /// The title block of pages: part, drawing, revision, author, a note.
     #[serde(default)]
     pub(crate) about: AboutEntry,
-    /// Handling of units: labels (not at all), warn, check (units that do not go together are errors) or convert (every name times its
-    /// factor to SI, results to their own unit).
+    /// Handling of units: labels only, warnings, errors (check), or conversion to SI and back (convert).
     #[cfg_attr(feature = "schema", schemars(extend("enum" = registry::unit_modes(), "default" = registry::unit_modes()[1])))]
     pub(crate) units: Option<Spanned<String>>,
     /// The inputs: each with its nominal value, its tolerance and its distribution.
@@ -50,9 +49,10 @@ pub(crate) struct StudyFile {
     /// Fixed numbers for formulas and models.
     #[serde(default)]
     pub(crate) constants: Entries<ConstantEntry>,
-    /// Intermediate values by name, in any order, without cycles. One that bears the name of an input of the model drives it. A formula knows + - * / ^, comparisons, if(condition, x, y), abs,
-    /// sign, floor, ceil, sqrt, exp, ln, log10, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, hypot, min, max, and the
-    /// constants pi and deg = pi/180; angles are radians; a name with other characters than letters, digits and _ stands in backquotes.
+    /// Intermediate values by name, in any order, without cycles. One with the name of an input of the model drives it. Formulas have + - *
+    /// / ^, comparisons, if(condition, x, y), abs, sign, floor, ceil, sqrt, exp, ln, log10, sin, cos, tan, asin, acos, atan, atan2, sinh,
+    /// cosh, tanh, hypot, min, max, and the constants pi and deg = pi/180; angles are radians; a name with other characters than letters,
+    /// digits and _ needs backquotes.
     #[serde(default)]
     pub(crate) formulas: Entries<FormulaEntry>,
     /// Values that equations and loops determine, each with the start of its search.
@@ -75,7 +75,7 @@ pub(crate) struct StudyFile {
     #[serde(default, rename = "joints")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "assembly::joints"))]
     pub(crate) _joints: Option<IgnoredAny>,
-    /// The key characteristics: what is asked.
+    /// The key characteristics, with their formulas, limits and targets.
     #[serde(default)]
     pub(crate) characteristics: Entries<CharacteristicEntry>,
     /// The cost of tolerances, for `sensitol allocate`; dimensions without a cost keep their tolerance. A band opens and
@@ -94,17 +94,17 @@ pub(crate) struct StudyFile {
     /// Blocks of dimensions that vary together as a whole: rows of a measured file, or points within a zone.
     #[serde(default)]
     pub(crate) joint: Joints,
-    /// Dimensions that are chosen from a stock after the parts are made, such as a shim, so that a characteristic is nearest a target; one after the
-    /// other. All characteristics are those after the choice.
+    /// Dimensions chosen from a stock for each assembly, such as a shim, so that a characteristic is nearest a target. They are chosen one
+    /// after the other, and all characteristics follow the choice.
     #[serde(default)]
     pub(crate) adjust: Adjustments,
-    /// Sizes of one assembly by name: nominal values and constants that take the place of those of the study, such as
-    /// small = { L = 40, D = 8 }; or file = "sizes.csv", whose first column is the name.
+    /// Sizes of one assembly by name. Their nominal values and constants replace those of the study, such as small = { L = 40, D = 8 }; or
+    /// file = "sizes.csv", whose first column is the name.
     #[serde(default, rename = "configurations")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::configurations"))]
     pub(crate) _configurations: Option<IgnoredAny>,
-    /// Capabilities of processes, by name, for dimensions with that `process`: turning = { cp = 1.33, cpk = 1.0 }; or processes = "shop.toml", a file
-    /// of such lines.
+    /// Capabilities of processes by name, for the key `process` of dimensions: turning = { cp = 1.33, cpk = 1.0 }; or processes =
+    /// "shop.toml", a file of such lines.
     #[serde(default, rename = "processes")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::processes::<DistributionEntry>"))]
     pub(crate) _processes: Option<IgnoredAny>,
@@ -130,7 +130,7 @@ pub(crate) struct StudyFile {
 pub(crate) struct ContactsEntry {
     /// Contacts that carry the force, for each set on which the part can rest.
     pub(crate) sets: Vec<Vec<String>>,
-    /// Comparisons of the equations, as written there. Where the one of index k is true, set k + 1 goes before all sets up to k.
+    /// Comparisons of the equations, as written there. If the one of index k is true, set k + 1 precedes all sets up to k.
     pub(crate) changes: Vec<String>,
 }
 
@@ -139,10 +139,10 @@ pub(crate) struct ContactsEntry {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table such as { nominal = 10.0, tolerance = 0.3 }")]
 pub(crate) struct DimensionEntry {
-    /// The value on the drawing, [x, y] of a position. Where it is left out: that of a built-in model, the mean of measured values.
+    /// The value on the drawing, [x, y] of a position. Unless given: that of a built-in model, or the mean of measured values.
     pub(crate) nominal: Option<Spanned<NominalEntry>>,
-    /// Half the tolerance band, 0.3, or lower and upper deviation from the nominal, [-0.1, 0.3]; each a number or percent of the
-    /// nominal, "2 %". Without tolerance and sigma a dimension is constant.
+    /// Half the tolerance band, 0.3, or both deviations from the nominal, [-0.1, 0.3]; numbers or percent of the nominal, "2 %". Without
+    /// tolerance and sigma a dimension is constant.
     pub(crate) tolerance: Option<Spanned<ToleranceEntry>>,
     /// Lower and upper limit, in place of a tolerance.
     pub(crate) limits: Option<Spanned<[f64; 2]>>,
@@ -153,12 +153,12 @@ pub(crate) struct DimensionEntry {
     #[serde(default, rename = "from")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::names"))]
     pub(crate) _from: Option<IgnoredAny>,
-    /// Diameter of the circular zone of a position, in place of a tolerance: two dimensions, NAME_x and NAME_y. A table where the size of
-    /// a feature widens the zone: { zone = 0.2, hole = "D", at = "MMC" }.
+    /// Diameter of the circular zone of a position, in place of a tolerance: two dimensions, NAME_x and NAME_y. A table if the size of a
+    /// feature widens the zone: { zone = 0.2, hole = "D", at = "MMC" }.
     #[serde(default)]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::position"))]
     pub(crate) position: Option<Spanned<f64>>,
-    /// Play between a hole and a pin, { hole = "A", pin = "B", law = "uniform" }: NAME is the radial clearance times where the pin lies.
+    /// Play between a hole and a pin, { hole = "A", pin = "B", law = "uniform" }: NAME is the radial clearance times the place of the pin.
     #[serde(default, rename = "float")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::float"))]
     pub(crate) _float: Option<IgnoredAny>,
@@ -166,7 +166,7 @@ pub(crate) struct DimensionEntry {
     #[serde(default, rename = "locate")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::locate"))]
     pub(crate) _locate: Option<IgnoredAny>,
-    /// Zone of a profile: the offset of a face, and with length its tilt NAME_tilt, which shares the zone. A table where it is not equal on
+    /// Zone of a profile: the offset of a face, and with length its tilt NAME_tilt, which shares the zone. A table if it is not equal on
     /// both sides: { zone = 0.4, outward = 0.3 }.
     #[serde(default, rename = "profile")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::profile"))]
@@ -219,7 +219,7 @@ pub(crate) struct DimensionEntry {
     #[serde(default, rename = "symmetry")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::zone"))]
     pub(crate) _symmetry: Option<IgnoredAny>,
-    /// Over which length a profile or an orientation holds.
+    /// Length over which a profile or an orientation holds.
     #[serde(default, rename = "length")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::zone"))]
     pub(crate) _length: Option<IgnoredAny>,
@@ -227,8 +227,8 @@ pub(crate) struct DimensionEntry {
     #[serde(default, rename = "axis")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::truth"))]
     pub(crate) _axis: Option<IgnoredAny>,
-    /// "out" where a form deviation only adds to a size. Beside cp and cpk "+" or "-": where the mean lies; without it half of the parts lie on
-    /// either side.
+    /// "out" for a form deviation that only adds to a size. Beside cp and cpk the side of the mean, "+" or "-"; unless given half of the
+    /// parts have each.
     #[serde(default)]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::side"))]
     pub(crate) side: Option<Spanned<String>>,
@@ -242,42 +242,41 @@ pub(crate) struct DimensionEntry {
     #[serde(default, deserialize_with = "distribution")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::distribution::<DistributionEntry>", extend("default" = "normal")))]
     pub(crate) distribution: Option<Spanned<DistributionEntry>>,
-    /// Standard deviation: half the band by sigmas unless given, and none of a kind whose sigma follows from its band. Two numbers, [0.1, 0.2], are
-    /// those below and above the nominal: a split-normal distribution.
+    /// Standard deviation; half the band divided by sigmas unless given. Kinds whose sigma follows from the band have none. Two numbers,
+    /// [0.1, 0.2], below and above the nominal, make a split-normal distribution.
     #[serde(default)]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::sigma"))]
     pub(crate) sigma: Option<Spanned<f64>>,
     /// Number of sigmas in half the tolerance band.
     #[cfg_attr(feature = "schema", schemars(extend("default" = vocabulary::SIGMAS)))]
     pub(crate) sigmas: Option<Spanned<f64>>,
-    /// Process capability, another way to say sigmas: cp = sigmas/3.
+    /// Process capability, in place of sigmas: cp = sigmas/3.
     pub(crate) cp: Option<Spanned<f64>>,
-    /// Process capability with the place of the mean. Alone: another way to say cp, and the mean lies in the middle. Beside cp: the mean lies
-    /// half a band times 1 - cpk/cp off the middle.
+    /// Process capability with the place of the mean. Alone it means cp, with the mean in the middle. Beside cp the mean lies half a band
+    /// times 1 - cpk/cp off the middle.
     pub(crate) cpk: Option<Spanned<f64>>,
     /// Greatest distance of the mean of a lot from the mean of all: lots are uniform within it on either side.
     pub(crate) drift: Option<Spanned<f64>>,
-    /// A process of [processes]: its keys count where the dimension does not have them.
+    /// A process of [processes] with the keys that the dimension leaves out.
     #[serde(default, rename = "process")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub(crate) _process: Option<IgnoredAny>,
     /// The factor of its part in the inflated RSS; that of [analysis] unless given.
     pub(crate) rss_factor: Option<Spanned<f64>>,
-    /// The part of its half band by which its mean may be off in the mean-shift RSS, from 0 to 1; that of [analysis] unless given.
+    /// Possible shift of its mean in the mean-shift RSS, as part of its half band; that of [analysis] unless given.
     pub(crate) mean_shift: Option<Spanned<f64>>,
     /// Degrees of freedom of its standard uncertainty, for the budget that `analyze --gum` prints; infinite unless given.
     pub(crate) degrees: Option<Spanned<f64>>,
     /// Distance of the mean from the middle of the band; of a kind with a tail, from the nominal.
     #[cfg_attr(feature = "schema", schemars(extend("default" = 0)))]
     pub(crate) shift: Option<Spanned<f64>>,
-    /// Central moments 2 to 8 about the mean, where nothing else is known of the distribution; it cannot be sampled then.
+    /// Central moments 2 to 8 about the mean, in place of a distribution; the dimension cannot be sampled then.
     pub(crate) moments: Option<Spanned<[f64; 7]>>,
     /// A CSV file of measured values, relative to the study's folder; they stand for the distribution.
     pub(crate) measured: Option<Spanned<String>>,
-    /// The column of the measured file, by the name in its first line; where it is left out that of the dimension's name, or the only one.
+    /// Column of the measured file by its header; unless given the one with the dimension's name, or the only one.
     pub(crate) column: Option<Spanned<String>>,
-    /// True if rows of the measured file are the same parts as those of other columns of it, which then vary together; false for values
-    /// of other parts; true unless given.
+    /// True if a row of the measured file is one part, so that its columns vary together (default); false for values of different parts.
     pub(crate) joint: Option<Spanned<bool>>,
     /// The column with the number of the part: rows of several files with the same one belong together.
     #[serde(rename = "match")]
@@ -287,7 +286,7 @@ pub(crate) struct DimensionEntry {
     pub(crate) model: Option<Spanned<String>>,
     /// Evaluation step in sigmas, in place of the nodes that suit the distribution.
     pub(crate) step: Option<Spanned<f64>>,
-    /// A few words on its meaning: shown in reports, of no meaning to the analysis, as part, drawing, revision and feature.
+    /// A few words on its meaning, for reports only, as are part, drawing, revision and feature.
     pub(crate) description: Option<String>,
     /// The part that it belongs to.
     pub(crate) part: Option<String>,
@@ -361,8 +360,8 @@ pub(crate) struct TermEntry(pub(crate) String);
 pub(crate) struct CharacteristicEntry {
     /// A formula of dimensions, constants, formulas and outputs of the model; without one it is an output of that name.
     pub(crate) formula: Option<Spanned<String>>,
-    /// The play that a fastener has left, in place of a formula: { kind = "fixed", hole = "h", pin = "p", places = ["hp", "tp"] }, or
-    /// kind = "floating" with two holes.
+    /// The remaining play of a fastener, in place of a formula: { kind = "fixed", hole = "h", pin = "p", places = ["hp", "tp"] }, or kind =
+    /// "floating" with two holes.
     #[serde(default, rename = "fastener")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::fastener"))]
     pub(crate) _fastener: Option<IgnoredAny>,
@@ -394,8 +393,7 @@ pub(crate) struct CharacteristicEntry {
     pub(crate) minimum: Option<Spanned<MotionEntry>>,
     /// The greatest value of another characteristic over a motion.
     pub(crate) maximum: Option<Spanned<MotionEntry>>,
-    /// Another characteristic whose limits decide which assemblies count: the yield, and the target_yield, are those of the assemblies that
-    /// keep them.
+    /// Another characteristic. The yield and the target_yield then refer to the assemblies within its limits only.
     pub(crate) given: Option<Spanned<String>>,
     /// The unit of the result and its limits: a label, checked or converted as `units` says.
     pub(crate) unit: Option<String>,
@@ -403,17 +401,18 @@ pub(crate) struct CharacteristicEntry {
     pub(crate) lower: Option<Spanned<f64>>,
     /// Upper limit.
     pub(crate) upper: Option<Spanned<f64>>,
-    /// The share of assemblies that must keep the limits, between 0 and 1; what --check looks at, and what allocate keeps.
+    /// Least share of assemblies within the limits, between 0 and 1; --check judges it, and allocate keeps it.
     pub(crate) target_yield: Option<Spanned<f64>>,
     /// The least Cpk; the same as require = { cpk = 1.33 }.
     pub(crate) target_cpk: Option<Spanned<f64>>,
-    /// A requirement, for allocate in place of its target_yield, for --check in addition to it: worst case, rss, or a number.
+    /// A requirement: worst case, rss, or a number. allocate keeps it in place of target_yield, --check judges both.
     pub(crate) require: Option<Spanned<RequireEntry>>,
-    /// The standard deviation of the gauge by which parts are accepted: the report then has the risks of that.
+    /// Standard deviation of the gauge that accepts parts; the report then has the risks of the inspection.
     pub(crate) gauge: Option<Spanned<f64>>,
-    /// Amount by which the limits are tightened for acceptance, or `{ false_accept = 0.001 }` for the share of all parts that may be bad and accepted.
+    /// Amount by which the limits are tightened for acceptance, or `{ false_accept = 0.001 }`: the greatest share of all parts that are bad
+    /// and accepted.
     pub(crate) guard: Option<Spanned<GuardEntry>>,
-    /// A few words on its meaning: shown in reports, of no meaning to the analysis, as part, drawing, revision and feature.
+    /// A few words on its meaning, for reports only, as are part, drawing, revision and feature.
     pub(crate) description: Option<String>,
     /// The part that it belongs to.
     pub(crate) part: Option<String>,
@@ -439,13 +438,13 @@ pub(crate) struct ModelEntry {
     pub(crate) builtin: Option<Spanned<String>>,
     /// A program and its arguments, each a text of its own, run in the study's folder; it speaks the adapter protocol.
     pub(crate) command: Option<Spanned<Vec<String>>>,
-    /// A CSV file of influence coefficients, relative to the study's folder, in place of a program: a row for every output, a column for every input,
-    /// and y0 (the outputs at zero inputs) or nominal (at the nominal dimensions). Each row becomes a linear formula.
+    /// A CSV file of influence coefficients in place of a program: a row for every output, a column for every input. Column y0 has the
+    /// outputs at zero inputs, or nominal those at the nominal dimensions. Rows become linear formulas.
     #[serde(default, rename = "matrix")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub(crate) _matrix: Option<IgnoredAny>,
-    /// Names that a command is sent at every point, in this order: dimensions, constants and formulas, in place of all dimensions. A
-    /// formula in it drives the program. Two points that send the same numbers are one evaluation.
+    /// Names that the program gets at every point, in this order, in place of all dimensions: dimensions, constants and formulas. Points
+    /// with the same numbers are one evaluation.
     pub(crate) inputs: Option<Spanned<Vec<Spanned<String>>>>,
     /// Processes side by side.
     #[cfg_attr(feature = "schema", schemars(extend("default" = registry::program().workers)))]
@@ -459,7 +458,7 @@ pub(crate) struct ModelEntry {
     /// Number of retries of a point that failed.
     #[cfg_attr(feature = "schema", schemars(extend("default" = registry::program().retries)))]
     pub(crate) retries: Option<Spanned<u64>>,
-    /// Number of answers that are replayed in a fresh process, to see whether they depend on the points before; 0 for none. By default 5 %, at
+    /// Number of answers that are repeated in a fresh process, because they may depend on earlier points; 0 for none. By default 5 %, at
     /// least 5, and 2 more, up to 59.
     pub(crate) verify: Option<Spanned<u64>>,
     /// Files that the model depends on, relative to the study's folder: with other contents nothing kept in the journal is used.

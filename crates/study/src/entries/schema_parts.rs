@@ -140,7 +140,7 @@ pub(crate) fn position(_: &mut SchemaGenerator) -> Schema {
 /// Schema of `float`, the play between a hole and a pin.
 pub(crate) fn float(_: &mut SchemaGenerator) -> Schema {
     let laws = json!({
-        "description": "Where the pin lies: evenly along a line, on either side, always on one, evenly in the hole, on its wall in any direction.",
+        "description": "Place of the pin: evenly along a line, on either side, always on one, evenly in the hole, on its wall in any direction.",
         "enum": ["uniform", "contact", "+", "-", "disc", "rim"],
         "default": "uniform",
     });
@@ -155,7 +155,7 @@ pub(crate) fn locate(_: &mut SchemaGenerator) -> Schema {
         "pin": diameter("The pin in it."),
         "slot": diameter("The width of the slot."),
         "pin2": diameter("The pin in the slot."),
-        "distance": diameter("From one pin to the other."),
+        "distance": diameter("Distance of the two pins."),
     });
     Schema::try_from(table(sizes, &["hole", "pin", "slot", "pin2", "distance"])).unwrap_or_default()
 }
@@ -163,7 +163,7 @@ pub(crate) fn locate(_: &mut SchemaGenerator) -> Schema {
 /// Schema of `profile`: a zone, or a table with its part outside of the material.
 pub(crate) fn profile(_: &mut SchemaGenerator) -> Schema {
     let frame = table(
-        json!({ "zone": size("Width of the zone."), "outward": size("Its part outside of the material.") }),
+        json!({ "zone": size("Width of the zone."), "outward": size("Part of the zone outside the material.") }),
         &["zone"],
     );
     json_schema!({ "anyOf": [{ "type": "number", "minimum": 0 }, frame] })
@@ -178,7 +178,7 @@ pub(crate) fn fastener(_: &mut SchemaGenerator) -> Schema {
         "holes": two("The two holes of a floating fastener."),
         "pin": diameter("The pin, stud or bolt."),
         "places": two("The positions of the two features; of a fixed fastener that of the threads is the second."),
-        "projection": size("How far a fixed fastener stands out of its threads, where the zone is not a projected one."),
+        "projection": size("Projection of a fixed fastener from its threads, unless the zone is projected."),
         "depth": size("The depth of the threads."),
     });
     Schema::try_from(table(keys, &["kind", "pin", "places"])).unwrap_or_default()
@@ -200,7 +200,7 @@ pub(crate) fn configurations(_: &mut SchemaGenerator) -> Schema {
 /// Schema of `[processes]`: lines with keys like those of a dimension, or a file of such lines.
 pub(crate) fn processes<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
     let mut law = distribution::<T>(generator).to_value();
-    law["description"] = json!("How it is distributed.");
+    law["description"] = json!("Its distribution.");
     let number = |what: &str| json!({ "description": what, "type": "number" });
     let process = json!({
         "type": "object",
@@ -208,9 +208,9 @@ pub(crate) fn processes<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schem
             "cp": number("Process capability: half a band over 3 sigma."),
             "cpk": number("Process capability with the place of the mean."),
             "sigma": number("Its standard deviation."),
-            "sigmas": number("How many sigma half a band has."),
-            "drift": number("How far the mean of a lot lies off the mean of all, at most."),
-            "side": { "description": "Where the mean lies.", "type": "string", "enum": ["+", "-"] },
+            "sigmas": number("Number of sigmas in half a band."),
+            "drift": number("Greatest distance of the mean of a lot from the mean of all."),
+            "side": { "description": "Side of the mean.", "type": "string", "enum": ["+", "-"] },
             "distribution": law,
         },
         "additionalProperties": false,

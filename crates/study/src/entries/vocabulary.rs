@@ -11,7 +11,7 @@ pub(crate) const REQUIREMENTS: [&str; 2] = ["worst-case", "rss"];
 /// Form of `[[correlation]]`, for faults.
 pub(crate) const CORRELATIONS: &str = "a list, each pair of dimensions below its own [[correlation]],";
 
-/// Form of `[[adjust]]`, for faults.
+/// Form of `[[adjust]]` in error messages.
 pub(crate) const ADJUSTMENTS: &str = "a list, each adjusted dimension below its own [[adjust]],";
 
 /// Form of `[[joint]]`, for faults.
@@ -48,7 +48,7 @@ pub(crate) enum Kind {
     SplitNormal,
     GumbelLargest,
     GumbelSmallest,
-    /// Any distribution within the band that keeps what is promised of it.
+    /// Any distribution within the band that keeps its promises.
     Any,
     /// Distribution by the key `moments`, which has no name.
     Moments,

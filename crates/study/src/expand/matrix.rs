@@ -24,7 +24,7 @@ const UNIT: &str = "unit";
 struct Matrix {
     /// Name of the first column and its cells: outputs with their lines.
     outputs: NumberedCells,
-    /// Units of the outputs; empty where none is given.
+    /// Units of the outputs; empty if none is given.
     units: Vec<String>,
     /// Values at zero inputs, or at the nominal dimensions if `centred`.
     constants: Vec<f64>,

@@ -36,7 +36,7 @@ pub(super) fn expand(expanded: &mut Expanded, data: &mut Data<'_>) -> Result<(),
     faults.none()
 }
 
-/// Gives a line with the key `process` the keys of that process which it lacks.
+/// Fills a line that has the key `process` with the keys of that process that it leaves out.
 fn taken(line: &mut Tree, processes: &Processes, at: &str, faults: &mut Faults) {
     let Some(line) = line.entries_mut() else { return };
     let Some(place) = line.iter().position(|(key, _)| key.name == "process") else { return };

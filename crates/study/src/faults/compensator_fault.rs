@@ -1,6 +1,6 @@
 //! Faults of compensators, extremes over motions and conditions.
 
-/// An adjusted dimension, an extreme over a motion or a condition that says nothing usable.
+/// An adjusted dimension, an extreme over a motion or a condition that is not usable.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompensatorFault {

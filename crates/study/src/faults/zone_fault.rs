@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A zone or a float of an assembly in space that says nothing usable.
+/// A zone or a float of an assembly in space that is not usable.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ZoneFault {

@@ -122,7 +122,7 @@ fn is_left_out(name: &str, cell: &Content, options: &ImportOptions) -> bool {
         || given.is_none() && (own() || SERIALS.contains(&name.trim().to_lowercase().as_str()))
 }
 
-/// True for a column that counts the parts: its header says so, and its whole numbers rise by 1.
+/// True for a column that counts the parts, by its header and by whole numbers that rise by 1.
 fn counts_parts(name: &str, place: usize, rows: &[(u64, Vec<Content>)], options: &ImportOptions) -> bool {
     if !COUNTED.contains(&plain(name).as_str()) || options.columns.iter().any(|(_, header)| header == name.trim()) {
         return false;

@@ -229,7 +229,7 @@ pub(super) fn spread(
     }
 }
 
-/// Refuses limits that lie elsewhere than the tolerance beside them says.
+/// Refuses limits that contradict the tolerance beside them.
 pub(super) fn same_limits(
     spread: &Spread,
     nominal: f64,

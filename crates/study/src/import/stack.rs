@@ -290,7 +290,7 @@ fn parts(table: &mut Table, values: &[f64], spreads: &[Spread]) -> Result<Vec<Pa
     Ok(parts)
 }
 
-/// True if the sign of a nominal value says the direction, so that the tolerance is that of the positive value. A tolerance on both sides is
+/// True if the sign of a nominal value is its direction, so that the tolerance is that of the positive value. A tolerance on both sides is
 /// the same either way, and limits beside the nominal value have its sign.
 fn sign_is_direction(header: &Header, row: &Row, spread: &Spread, values: &[f64]) -> bool {
     let nominal = values[row.nominal];
@@ -359,7 +359,7 @@ fn worst_case(parts: &[Part]) -> Option<[f64; 2]> {
     Some(sum)
 }
 
-/// One line on what was read.
+/// One line on the content of the table.
 fn summary(
     table: &Table,
     spreads: &[Spread],

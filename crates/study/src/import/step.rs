@@ -24,7 +24,7 @@ pub struct StepRequest {
     pub part: Option<String>,
     /// True if joints are proposed.
     pub joints: bool,
-    /// Lines that say what to do next, each without a mark of a comment.
+    /// Lines with the next steps, each without a mark of a comment.
     pub next: Vec<String>,
 }
 

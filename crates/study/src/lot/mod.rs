@@ -35,7 +35,7 @@ const GROUPS: [(&str, GroupKind); 14] = [
 /// Headers of the time of a row, compared in lower case.
 const TIMES: [&str; 8] = ["time", "date", "datetime", "timestamp", "zeit", "datum", "uhrzeit", "date and time"];
 
-/// A measured table with what was left out or converted.
+/// A measured table, with its omitted and converted columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadLot {
     /// Rows of the table.

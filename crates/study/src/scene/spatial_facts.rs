@@ -10,7 +10,7 @@ use sensitol_spatial::{Assembly, Direction, Feature, FeatureId, Mobility, PartPo
 pub(crate) enum ExtentQuantity<T> {
     Unknown,
     Length(T),
-    /// Along x and along y of the feature.
+    /// Components along x and y of the feature.
     Rectangle([T; 2]),
     /// Diameter of a round face.
     Round(T),
@@ -90,7 +90,7 @@ impl SpatialFacts {
     }
 }
 
-/// Numbers of a feature, each with what it measures.
+/// Numbers of a feature, each with the quantity that it measures.
 pub(super) fn numbers(feature: &mut Feature) -> Vec<(&mut Quantity, NumberKind)> {
     fn of_direction(direction: &mut Direction) -> Vec<(&mut Quantity, NumberKind)> {
         match direction {

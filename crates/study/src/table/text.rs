@@ -1,7 +1,7 @@
 //! Splits delimited text into rows of cells.
 
-/// Delimiter of a table: the first candidate that splits the header and the next row into the same number of cells, or else the header
-/// alone. Returns a comma if no candidate does, since there is one column then.
+/// Delimiter of a table: the first candidate that splits the header and the next row into equally many cells, else the header alone.
+/// Returns a comma if no candidate does, since there is one column then.
 pub fn delimiter(text: &str, candidates: [u8; 3]) -> u8 {
     let cells = |delimiter: u8| {
         let mut rows = records(text, delimiter).map(|(_, row)| row.len());

@@ -51,7 +51,7 @@ pub(crate) struct ExampleReport {
     name: String,
     /// The heading of its README.
     title: Option<String>,
-    /// Its files, by their paths from its folder.
+    /// Files of the example, by their paths from its folder.
     files: Vec<String>,
 }
 
@@ -155,7 +155,7 @@ fn copy(files: &ExampleFiles, folder: &Path) -> Result<(), Failure> {
     std::fs::rename(&new, folder).map_err(unwritable)
 }
 
-/// Formats what was written, what is missing beside it, and the command to try next.
+/// Formats the list of written files, missing programs, and the command to try next.
 fn told(files: &ExampleFiles, folder: &Path) -> String {
     let mut text = format!("written: {}, {} files\n", folder.display(), files.len());
     let mut outside = Vec::new();

@@ -83,7 +83,7 @@ fn head(status: u16, fields: &str) -> String {
 /// Response in lines, each sent at once in a chunk of its own: HTTP/1.1, section 7.1 of RFC 9112.
 pub(in crate::commands::serve) struct Lines<'c> {
     connection: &'c Connection,
-    /// True if a part could not be sent: what follows would be read as another part.
+    /// True if a part could not be sent: the bytes after it would be read as another part.
     broken: bool,
 }
 

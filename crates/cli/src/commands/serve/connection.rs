@@ -12,7 +12,7 @@ const MOST: usize = 64;
 const LEAST: usize = 16;
 /// Longest pause of a client while it sends or receives.
 const PAUSE: Duration = Duration::from_secs(10);
-/// Time in which a client hears that the response has ended, and ends its own side.
+/// Time for a client to receive the end of the response, and to end its own side.
 const FAREWELL: Duration = Duration::from_secs(5);
 /// Longest pause after a connection that could not be accepted: the system may have descriptors again.
 const RETRY: Duration = Duration::from_millis(100);
@@ -33,7 +33,7 @@ impl Connection {
         Self { stream }
     }
 
-    /// Reads what has arrived, until this time at the latest. Returns 0 if the client sends no more.
+    /// Reads the bytes that have arrived, until this time at the latest. Returns 0 if the client sends no more.
     pub(in crate::commands::serve) fn read(&self, buffer: &mut [u8], end: Instant) -> Result<usize> {
         loop {
             self.stream.set_read_timeout(Some(left(end)?))?;
@@ -58,7 +58,7 @@ impl Connection {
         Ok(())
     }
 
-    /// Ends the response, and drops what the client still sends: with unread bytes the system would take the response back.
+    /// Ends the response, and drops further bytes of the client: with unread bytes the system would discard the response.
     fn close(&self) {
         let end = Instant::now() + FAREWELL;
         let mut block = vec![0; BLOCK];

@@ -84,8 +84,8 @@ impl Distribution for Triangular {
         self.half * ((3.0 + self.lean * self.lean) / 18.0).sqrt()
     }
 
-    /// Moments as polynomials in the lean `e` over powers of the variance. On the interval from -1 to 1 the variance is `(3 + e^2)/18`, and
-    /// `m3 = -e (9 - e^2)/135`. The kurtosis is always 12/5.
+    /// Moments as polynomials in the asymmetry `e`, over powers of the variance. On the interval from -1 to 1 the variance is `(3 +
+    /// e^2)/18`, and `m3 = -e (9 - e^2)/135`. The kurtosis is always 12/5.
     fn standard_moments(&self) -> StandardMoments {
         let (d, e2) = (-self.lean, self.lean * self.lean);
         let v = (3.0 + e2) / 18.0;

@@ -157,7 +157,7 @@ impl Work for LogSums<'_> {
     }
 }
 
-/// Message as a table: for every node of the parent the weights of the own nodes, which sum to 1, and their rotation to the next point.
+/// Message as a table. Every node of the parent has the weights of the own nodes, with the sum 1, and their rotation to the next point.
 pub(super) struct Message {
     now: NodeFactors,
     turn: NodeFactors,

@@ -35,7 +35,7 @@ pub(in crate::law) struct Block {
     pub members: Vec<usize>,
     /// `L Q`: the inputs as combinations of independent normal variables; None for a single input.
     pub(in crate::law) axes: Option<Mat<f64>>,
-    /// `a_i`, set to 0 where it is only rounding.
+    /// `a_i`, set to 0 if it is only rounding.
     pub(in crate::law) curvatures: Vec<f64>,
     /// Slopes `beta_i` along the axes.
     pub(in crate::law) slopes: Vec<f64>,

@@ -99,8 +99,7 @@ impl Single {
     fn table_at(&self, theta: f64, top: f64) -> Arc<Table> {
         /// Levels beyond that of the tilt from which on the interval is found first.
         const BEYOND: i32 = 2;
-        /// Levels from a table to the one that shows where its weight lies: neighbouring nodes of that one differ by at most 4 in the
-        /// exponent.
+        /// Levels from a table to the one that locates its weight: neighbouring nodes of that one differ by at most 4 in the exponent.
         const COARSER: i32 = 2;
         let (own, wanted) = (level(theta.abs()), level(top));
         let beyond = wanted > own + BEYOND;

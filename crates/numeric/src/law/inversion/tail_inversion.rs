@@ -324,9 +324,9 @@ impl Inversion {
 /// Number of points of a sum.
 #[derive(Debug, Clone, Copy)]
 enum Extent {
-    /// At least these points, and more until two windows agree.
+    /// Fewest points; more are added until two windows agree.
     From(usize),
-    /// At least these points, and more until two windows agree well enough for a quantile.
+    /// Fewest points of a quantile; more are added until two windows agree well enough.
     Nearly(usize),
     /// Points and window of another sum.
     Fixed(Window),

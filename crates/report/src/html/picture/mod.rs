@@ -51,7 +51,7 @@ struct PicturedCharacteristic {
     /// Contributions, the strongest first; empty if none is known.
     shares: Vec<OwnerShare>,
     labels: Vec<SheetLabel>,
-    /// Sentence on what the picture shows.
+    /// Sentence on the content of the picture.
     words: String,
 }
 
@@ -151,7 +151,7 @@ fn anchors(drawing: &Drawing, scene: &AssemblyScene, share: &OwnerShare) -> Vec<
     }
 }
 
-/// Sentences on what the picture shows.
+/// Sentences on the content of the picture.
 fn words(scene: &AssemblyScene, name: &str, shares: &[OwnerShare], measured: &[usize]) -> String {
     let still: Vec<&str> = scene.parts.iter().filter(|part| part.ground).map(|part| part.name.as_str()).collect();
     let stand = if still.len() == 1 { "stands" } else { "stand" };

@@ -1,4 +1,4 @@
-//! Sheet of a drawing: the view that fits it, its marks as paths, and its labels where they overlap least.
+//! Sheet of a drawing: the view that fits it, its marks as paths, and its labels with the least overlap.
 
 use std::fmt::Write;
 

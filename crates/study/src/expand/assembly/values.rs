@@ -29,7 +29,7 @@ pub(super) struct Values<'t> {
     converts: bool,
     /// Unit of lengths; None if the study names none.
     unit: Option<String>,
-    /// Formulas with their keys, places, and what they measure.
+    /// Formulas with their keys, places and measured quantities.
     formulas: Vec<(String, Tree, Measures)>,
 }
 

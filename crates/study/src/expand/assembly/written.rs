@@ -22,7 +22,7 @@ const OF_JOINT: [&str; 5] = ["gap", "length", "value", "offset", "tilt"];
 pub(super) enum WrittenExtent {
     Unknown,
     Length(Tree),
-    /// Along x and along y of the feature.
+    /// Components along x and y of the feature.
     Rectangle([Tree; 2]),
     /// Diameter of a round face.
     Round(Tree),

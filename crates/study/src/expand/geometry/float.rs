@@ -1,4 +1,4 @@
-//! Expands play between a hole and a pin: the float of one part in another, and of a part on a round pin and in a slot.
+//! Expands play between a hole and a pin: the float of one part in another, or on a round pin and in a slot.
 
 use crate::error::{Fault, StudyFault};
 use crate::expand::geometry::line::{Diameter, Line, Part};

@@ -9,7 +9,7 @@ use crate::distribution::{
     Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, finite, positive, standard_normal,
 };
 
-/// Farthest point of the quadrature, in sigmas of its side: a normal density times any power of the order that is kept is below 1e-17 beyond.
+/// Farthest point of the quadrature, in sigmas of its side: beyond it a normal density times any kept power is below 1e-17.
 const FARTHEST: i32 = 14;
 /// Nodes of the quadrature in each piece, one sigma wide.
 const NODES: usize = 16;

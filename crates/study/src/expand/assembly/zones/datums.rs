@@ -64,7 +64,7 @@ struct Fixed {
 }
 
 impl Fixed {
-    /// Adds what a datum fixes. Returns false if that is nothing.
+    /// Adds the freedoms that a datum fixes. Returns false if that is nothing.
     fn add(&mut self, kind: FeatureKind, frame: &ConstantFrame) -> bool {
         let [x, y, z] = frame.axes;
         // Points and further axes fix what is left of the rotations by their distance, which is not examined.
@@ -271,7 +271,7 @@ pub(super) fn carried(
     Ok(own)
 }
 
-/// Adds what one feature takes over, after its datums.
+/// Adds the freedoms that one feature fixes, after its datums.
 fn carry(
     feature: usize,
     features: &[&ZonedFeature<'_>],

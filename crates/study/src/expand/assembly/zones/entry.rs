@@ -82,7 +82,7 @@ impl ZoneEntry<'_> {
 pub(super) enum FeatureExtent {
     Unknown,
     Length(Extent),
-    /// Along x and along y of the feature.
+    /// Components along x and y of the feature.
     Rectangle([Extent; 2]),
     /// Diameter of a round face.
     Round(Extent),
