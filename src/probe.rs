@@ -248,7 +248,7 @@ impl<'a> Probing<'a> {
         (out, begun.elapsed())
     }
 
-    /// Asks for every point after the first one. Returns the times for a point by itself and for one of many, too.
+    /// Requests every point after the first one. Returns the times for a point by itself and for one of many, too.
     fn ask_passes(&self, first: Responses) -> (Passes, [Duration; 2]) {
         let nominal = self.nominal.clone();
         let (second, alone) = self.ask_timed(std::slice::from_ref(&nominal));

@@ -52,12 +52,12 @@ pub enum Goal {
     /// Greatest least Cpk for a given cost, over all characteristics with limits and without a required worst case or
     /// sigma.
     MostCpk {
-        /// Most that may be spent.
+        /// Greatest amount that may be spent.
         cost_limit: f64,
     },
     /// Fewest rejects of the one characteristic with limits, for a given cost.
     FewestRejects {
-        /// Most that may be spent.
+        /// Greatest amount that may be spent.
         cost_limit: f64,
     },
 }
@@ -325,7 +325,7 @@ pub enum AllocateError {
     TooManyMachines {
         /// Number of machines.
         count: usize,
-        /// Most machines.
+        /// Greatest number of machines.
         most: usize,
     },
     /// Scrap cost of a characteristic without limits.

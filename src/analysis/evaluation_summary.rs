@@ -8,7 +8,7 @@ use crate::analysis::CharacteristicAnalysis;
 use crate::method::{ClimbEnd, Outcome};
 use crate::problem::Problem;
 
-/// Most dimensions that are named in a sentence.
+/// Greatest number of dimensions that are named in a sentence.
 const NAMED: usize = 8;
 /// Share of the variance below which a curvature counts as zero. It must be below it in every characteristic.
 const STRAIGHT: f64 = 1e-8;

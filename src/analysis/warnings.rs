@@ -34,7 +34,7 @@ const CURVED: f64 = 0.05;
 const SHALLOW_CURVED: f64 = 1e-2;
 /// Residual of a fitted surface, as a part of sigma, above which the fit is poor.
 const POOR: f64 = 0.05;
-/// Fewest points with a value of exactly 0 that count as an atom, if the value at the means is not 0.
+/// Smallest number of points with a value of exactly 0 that count as an atom, if the value at the means is not 0.
 const ATOM: usize = 2;
 /// Share of the variance by curvature above which a dimension with a long tail gets a warning.
 const LONG_TAIL: f64 = 1e-3;

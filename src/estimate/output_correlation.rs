@@ -16,7 +16,8 @@ use sensitol_numeric::sampling::{Normals, clopper_pearson};
 
 /// Number of points of one randomisation.
 const ROWS: usize = 1 << 10;
-/// Most rounds of points for a rare condition: a million points, half a second of a formula. One in 10000 keeps it at a hundred of them.
+/// Greatest number of rounds of points for a rare condition: a million points, half a second of a formula. One in 10000 keeps it at a
+/// hundred of them.
 const ROUNDS: usize = 64;
 /// Number of points keeping the condition that is enough: their share has an error of at most 1 %.
 const ENOUGH: u64 = 2500;
@@ -37,7 +38,7 @@ pub struct OutputCorrelation {
 }
 
 impl OutputCorrelation {
-    /// Most characteristics with a table of correlations, whose size grows with their square.
+    /// Greatest number of characteristics with a table of correlations, whose size grows with their square.
     pub(crate) const MOST: usize = 40;
 }
 
@@ -140,7 +141,7 @@ pub(crate) fn common_rejects(problem: &Problem, characteristics: &[usize], seed:
     Some(Verified { value, error: error.max(1.0 / points) })
 }
 
-/// Most evaluations of [`counted_condition`].
+/// Greatest number of evaluations of [`counted_condition`].
 pub(crate) const fn most_points_given() -> usize {
     2 * ROWS * REPLICATES * ROUNDS
 }

@@ -25,7 +25,7 @@ use sensitol_numeric::surrogate::Surrogate;
 pub(crate) const REPLICATES: usize = 16;
 /// Points of a half-space in all randomisations together.
 pub(crate) const TAIL: usize = 1 << 12;
-/// Most random numbers for the points of one stratum.
+/// Greatest number of random numbers for the points of one stratum.
 const NUMBERS: usize = 1_000_000;
 /// Points that determine the direction of the tails.
 pub(crate) const PILOT: usize = 1 << 10;

@@ -24,9 +24,9 @@ const SHARED: usize = 1 << 14;
 const WIDE: [f64; 2] = [2.0, 3.0];
 /// Greatest probability of a side that is searched for, 256 of 32 768 points.
 const SELDOM: f64 = 1.0 / 128.0;
-/// Most half-spaces of one switch: `abs(x) > c` has two.
+/// Greatest number of half-spaces of one switch: `abs(x) > c` has two.
 const PLACES: usize = 4;
-/// Most half-spaces of all switches.
+/// Greatest number of half-spaces of all switches.
 pub(crate) const MOST: usize = 6;
 /// Distance in sigmas at which a half-space begins before its design point.
 pub(crate) const BEFORE: f64 = 0.5;

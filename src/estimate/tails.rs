@@ -12,7 +12,7 @@ const SHOWN: usize = 40;
 const FROM: f64 = 0.1;
 /// Share at which a tail ends. Points in the strata of the tails weigh less the farther out they are.
 const TO: f64 = 1e-6;
-/// Fewest points at or beyond the last value: a share of fewer is meaningless.
+/// Smallest number of points at or beyond the last value: a share of fewer is meaningless.
 const FEWEST: usize = 4;
 
 /// Tails of a sample on every side with a limit: from 10 % to 1 ppm or the last few points, in even steps of the logarithm.

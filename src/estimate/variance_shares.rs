@@ -22,7 +22,7 @@ use sensitol_numeric::sampling::Normals;
 const EVALUATIONS: usize = 1 << 16;
 /// Number of scramblings, which give the errors.
 const REPLICATES: usize = 8;
-/// Fewest points of a scrambling, with any number of inputs.
+/// Smallest number of points of a scrambling, with any number of inputs.
 const FEWEST: usize = 64;
 /// Greatest number of inputs: more would need too many random numbers.
 const MOST: usize = 256;
@@ -30,7 +30,7 @@ const MOST: usize = 256;
 /// A share of the variance with its error.
 pub type Share = crate::estimate::verified::Verified;
 
-/// Most evaluations over this number of inputs.
+/// Greatest number of evaluations over this number of inputs.
 pub(crate) fn most_points(inputs: usize) -> usize {
     EVALUATIONS.max(REPLICATES * FEWEST * (inputs + 2))
 }

@@ -9,7 +9,7 @@ use sensitol_numeric::distribution::DistributionError;
 use sensitol_numeric::lot::LotSample;
 use sensitol_numeric::names::nearest;
 
-/// Fewest values of a measured dimension or characteristic.
+/// Smallest number of values of a measured dimension or characteristic.
 pub(crate) const FEWEST: usize = 5;
 
 /// Error of a comparison with a lot.

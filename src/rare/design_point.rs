@@ -12,11 +12,11 @@ pub(super) const FARTHEST: f64 = 37.0;
 /// Start of a half-space before its place, in sigmas. The place is known to some hundredths, and the limit may bend
 /// towards the means.
 pub(super) const BEFORE: f64 = 0.3;
-/// Most places of one target.
+/// Greatest number of places of one target.
 const PLACES: usize = 12;
 /// Least probability of a place relative to the nearest one: less likely places add nothing.
 pub(super) const FAINT: f64 = 1e-3;
-/// Most dimensions for which the bend of the limit is computed. Its cost is their square times that of the surrogate.
+/// Greatest number of dimensions for which the bend of the limit is computed. Its cost is their square times that of the surrogate.
 const BENT: usize = 40;
 /// Number of axes along which places are searched in addition to the steepest way.
 const AXES: usize = 8;

@@ -154,8 +154,8 @@ impl Explored {
         &self.normals
     }
 
-    /// Bound of the probability of a region that no point met. `dense` is true for each point near which the mixture
-    /// draws enough points.
+    /// Bound of the probability of a region without a sampled point. `dense` is true for each point near which the mixture draws enough
+    /// points.
     ///
     /// A reject there, at a place, or where the surrogate has one shows no other region, and is left out.
     pub(super) fn unmet(&self, target: &Target<'_>, places: &[&Place], dense: &[bool]) -> Option<Unmet> {

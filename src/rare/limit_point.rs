@@ -10,13 +10,13 @@ use crate::rare::target::Target;
 const CUTS: usize = 8;
 /// Rounds of cuts: three give the border to 1/512 of the way.
 const ROUNDS: usize = 3;
-/// Most steps of Hasofer and Lind.
+/// Greatest number of steps of Hasofer and Lind.
 pub(super) const STEPS: usize = 5;
 /// Step of the differences for the slope of the model, in sigmas.
 const STEP: f64 = 0.02;
 /// Factors of the tangent point's distance at which the line through it is searched.
 const LINE: [f64; 7] = [0.9, 0.94, 0.97, 1.0, 1.03, 1.06, 1.1];
-/// Most coordinates of a corner.
+/// Greatest number of coordinates of a corner.
 const SIDES: usize = 6;
 /// Halvings of a coordinate: four give it to a sixteenth, a quarter sigma at 4 sigma.
 const HALVINGS: usize = 4;

@@ -251,9 +251,9 @@ pub enum RareError {
     Samples {
         /// Number of points requested.
         samples: u64,
-        /// Fewest points.
+        /// Smallest number of points.
         least: u64,
-        /// Most points.
+        /// Greatest number of points.
         most: u64,
     },
     /// Characteristic whose target is that of the assemblies that keep another one's limits.
@@ -283,11 +283,11 @@ impl From<MethodError> for RareError {
     }
 }
 
-/// Fewest points: a handful gives no estimate.
+/// Smallest number of points: a handful gives no estimate.
 const LEAST: u64 = 50;
-/// Most points: every point is kept in memory until the end.
+/// Greatest number of points: every point is kept in memory until the end.
 const MOST: u64 = 10_000_000;
-/// Fewest and most points of a stage from which places and parts are learnt.
+/// Smallest and greatest number of points of a stage from which places and parts are learnt.
 const FIRST: [u64; 2] = [60, 2000];
 /// Number of learning stages.
 const LEARNING: u64 = 2;

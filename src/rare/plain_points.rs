@@ -22,9 +22,9 @@ use crate::rare::target::Target;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::sampling::{Estimate, clopper_pearson};
 
-/// Most points of the surrogate.
+/// Greatest number of points of the surrogate.
 const SURROGATE: usize = 1 << 20;
-/// Most coordinates of these points in all, for a time of some tenths of a second.
+/// Greatest number of coordinates of these points in all, for a time of some tenths of a second.
 const NUMBERS: usize = 1 << 27;
 /// Events that a count of 0 leaves possible, with 97.5 %. A surrogate that differs at as many points tells less than the count.
 const UNSEEN: f64 = 3.7;

@@ -17,9 +17,9 @@ use crate::rare::{LEAST, RareCharacteristic, RareOptions, SampledStages, correct
 use crate::simulation::Surrogates;
 use sensitol_numeric::time::Instant;
 
-/// Most points in refuted tails without a budget: as many as give a contact or a step at three sigmas to a factor of two.
+/// Greatest number of points in refuted tails without a budget: as many as give a contact or a step at three sigmas to a factor of two.
 pub const MOST_TAIL_POINTS: usize = 400;
-/// Fewest points for each limit: fewer leave an interval that is wider than that of the check points.
+/// Smallest number of points for each limit: fewer leave an interval that is wider than that of the check points.
 const FEWEST: u64 = 100;
 /// Relative standard error of every probability at which the points end.
 const ENOUGH: f64 = 0.1;

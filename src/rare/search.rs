@@ -16,18 +16,18 @@ use crate::rare::{Beyond, DesignPoint, RareCharacteristic, correct, limit_point 
 use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::sampling::Estimate;
 
-/// Most rejects that are kept to choose the parts of the components.
+/// Greatest number of rejects that are kept to choose the parts of the components.
 const GUIDES: usize = 2000;
-/// Fewest rejects that show the place of the others.
+/// Smallest number of rejects that show the place of the others.
 const FEW: usize = 8;
 /// Part of the components' first shares that is kept in every stage.
 const KEPT: f64 = 0.25;
 
-/// Most half-spaces of a target.
+/// Greatest number of half-spaces of a target.
 const HALF_SPACES: usize = 10;
 /// Greatest ratio of a reject's weight to the probability for which the reject needs no place of its own.
 const DENSE: f64 = 30.0;
-/// Most steps from a surrogate's place.
+/// Greatest number of steps from a surrogate's place.
 const TURNS: usize = 3;
 /// Distance beyond the place at which these steps begin, in sigmas.
 const BESIDE: f64 = 3e-3;

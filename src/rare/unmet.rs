@@ -21,8 +21,8 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use crate::rare::design_point::FARTHEST;
 use sensitol_numeric::distribution::standard_normal;
 
-/// Most directions of a region. Contacts and states of assemblies need one to three dimensions at once. Four would
-/// raise the bound of 1000 points from some 70 ppm to some 800 ppm.
+/// Greatest number of directions of a region. Contacts and states of assemblies need one to three dimensions at once. Four would raise the
+/// bound of 1000 points from some 70 ppm to some 800 ppm.
 const DIRECTIONS: usize = 3;
 /// Probability that the bound is too low by chance: 2.5 %, the upper half of a 95 % interval.
 const CHANCE: f64 = 0.025;
@@ -32,7 +32,7 @@ const BLUNT: f64 = 2.0;
 /// Least distance of a region, in sigmas. It then holds all assemblies.
 const NEAREST: f64 = -9.0;
 
-/// Bound of the probability of a region that no point met.
+/// Bound of the probability of a region without a sampled point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -41,7 +41,7 @@ pub struct Unmet {
     pub most: f64,
     /// Points that would have met it: of the inputs' own distribution and of wider ones, without explained rejects.
     pub points: u64,
-    /// Most directions that the region needs at once: 1 for a half-space, 2 or 3 for a corner.
+    /// Greatest number of directions that the region needs at once: 1 for a half-space, 2 or 3 for a corner.
     pub directions: u64,
 }
 

@@ -19,11 +19,11 @@ use sensitol_numeric::surrogate::Surrogate;
 
 /// Points of the surrogate for every point of the model, for the surrogate's own share within the limits.
 const MORE: u64 = 32;
-/// Fewest points of the surrogate for that share.
+/// Smallest number of points of the surrogate for that share.
 const LEAST: u64 = 1 << 18;
-/// Most points of the surrogate for that share.
+/// Greatest number of points of the surrogate for that share.
 const MOST: u64 = 1 << 24;
-/// Most operations for these points, approximately: some seconds.
+/// Greatest number of operations for these points, approximately: some seconds.
 const EFFORT: u64 = 1 << 31;
 
 /// Surrogates of a problem as control variates.

@@ -24,9 +24,9 @@ use sensitol_numeric::sampling::Normals;
 use sensitol_numeric::sampling::student_quantile;
 use sensitol_numeric::time::Instant;
 
-/// Most evaluations of a costly model without a budget.
+/// Greatest number of evaluations of a costly model without a budget.
 const UNASKED: u64 = 10_000;
-/// Most random numbers of one scrambling: some 64 megabytes.
+/// Greatest number of random numbers of one scrambling: some 64 megabytes.
 const NUMBERS: usize = 1 << 23;
 /// First stream of the points, apart from those of other samples.
 const STREAM: u64 = 1 << 36;

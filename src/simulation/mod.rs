@@ -65,7 +65,7 @@ use tally::{Block, Tally};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SimulationOptions {
-    /// Most points. Sobol' points are rounded up to the next power of two in each replicate.
+    /// Greatest number of points. Sobol' points are rounded up to the next power of two in each replicate.
     pub samples: u64,
     /// Sampler of the points.
     pub sampler: Sampler,
@@ -86,7 +86,7 @@ pub struct SimulationOptions {
     pub target_joint_yield: Option<f64>,
     /// Number n of base points for Sobol' indices, by exchanging inputs: n (N + 2) evaluations more. None for no indices.
     pub sobol: Option<u64>,
-    /// Most evaluations for Sobol' indices. If it is None, a costly model is evaluated 10 000 times for them at most.
+    /// Greatest number of evaluations for Sobol' indices. If it is None, a costly model is evaluated 10 000 times for them at most.
     pub budget: Option<u64>,
 }
 

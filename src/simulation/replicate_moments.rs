@@ -4,7 +4,7 @@ use crate::simulation::count::Replicate;
 use crate::simulation::replicate_error::of_replicates;
 use sensitol_numeric::sampling::{Estimate, FEWEST, Fine, Summary, of_moments};
 
-/// Fewest values beyond a quantile with which its standard error is meaningful.
+/// Smallest number of values beyond a quantile with which its standard error is meaningful.
 const BEYOND: f64 = 5.0;
 
 /// Bins of all replicates together. Returns None if there is no replicate with bins.

@@ -10,9 +10,9 @@ use sensitol_numeric::correlation::JointLaw;
 use sensitol_numeric::distribution::{Distribution, Sample};
 use sensitol_numeric::sampling::MeasuredSample;
 
-/// Most groups of a measured sample.
+/// Greatest number of groups of a measured sample.
 const GROUPS: usize = 400;
-/// Fewest points of a group on average.
+/// Smallest number of points of a group on average.
 const POINTS: u64 = 50;
 /// Half-width of the range of a fitted distribution that is divided into groups, in sigmas.
 const RANGE: f64 = 4.0;

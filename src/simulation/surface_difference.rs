@@ -25,7 +25,7 @@ use sensitol_numeric::sampling::{Estimate, FEWEST, Joint, LargestShare, LargestT
 const CONTROLS: usize = 4;
 /// Columns of the joint sums: `n_k - t^k` for k = 0 to 4, then the controls.
 const COLUMNS: usize = 1 + 2 * CONTROLS;
-/// Fewest points for a fit of coefficients. With fewer, the differences are used as they are.
+/// Smallest number of points for a fit of coefficients. With fewer, the differences are used as they are.
 const FITTED: u64 = 64;
 /// Smallest eigenvalue of the controls that is used, relative to the greatest: smaller ones are rounding errors.
 const SINGULAR: f64 = 1e-10;

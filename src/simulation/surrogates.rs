@@ -7,7 +7,7 @@ use crate::simulation::SimulationError;
 use sensitol_numeric::moments::Sampled;
 use sensitol_numeric::surrogate::Surrogate;
 
-/// Most varying dimensions for which every interaction is examined.
+/// Greatest number of varying dimensions for which every interaction is examined.
 const FULL: usize = 20;
 
 /// Surrogates, and the analysis that they come from.

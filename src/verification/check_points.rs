@@ -24,7 +24,7 @@ pub(super) const ON_LINE: [f64; 4] = [1.5, -1.5, 3.0, -3.0];
 pub(super) const ON_AXIS: f64 = 3.0;
 /// Distance by which inputs without effect are moved together, in sigmas.
 pub(super) const IDLE: f64 = 4.0;
-/// Most evaluations of a check.
+/// Greatest number of evaluations of a check.
 pub const MOST: usize = 18;
 /// Share of the variance above which an input gets points of its own.
 const STRONG: f64 = 0.03;
@@ -32,15 +32,15 @@ const STRONG: f64 = 0.03;
 const WEAK: f64 = 1e-4;
 /// Square of the line's component along an input from which on the points of the line suffice for it.
 const FOLLOWED: f64 = 0.5;
-/// Most inputs with points of their own.
+/// Greatest number of inputs with points of their own.
 const AXES: usize = 3;
-/// Most lines with check points.
+/// Greatest number of lines with check points.
 const LINES: usize = 3;
 /// Cosine of two directions above which they count as one line.
 const SAME: f64 = 0.95;
 /// Number of pairs of random points, normally and if there are many other points.
 const PAIRS: [usize; 2] = [4, 3];
-/// Fewest evaluations of a check: the random pairs.
+/// Smallest number of evaluations of a check: the random pairs.
 pub(super) const FEWEST: usize = 2 * PAIRS[1];
 /// Number of other points from which on there are fewer pairs.
 const MANY: usize = 8;

@@ -10,7 +10,7 @@ use sensitol_numeric::distribution::standard_normal;
 const HELD: f64 = 0.5;
 /// Parts of the way to a point at which a large residual is located.
 const PARTS: [f64; 4] = [1.0 / 3.0, 1.0 / 2.0, 2.0 / 3.0, 5.0 / 6.0];
-/// Most rays on which a residual is located.
+/// Greatest number of rays on which a residual is located.
 const LOCATED: usize = 2;
 /// Residual in sigmas from which on it is located: at four sigmas it changes a reject rate by a factor of three.
 const LARGE: f64 = 0.3;
@@ -28,7 +28,7 @@ const FARTHER: f64 = 1.5;
 /// Residual in sigmas above which all are alike, those of points without a value included.
 const MOST_SIGMAS: f64 = 10.0;
 
-/// Most evaluations that locate residuals, if the surface does not hold.
+/// Greatest number of evaluations that locate residuals, if the surface does not hold.
 pub const MOST_LOCATING: usize = LOCATED * PARTS.len();
 
 /// A straight line from the means with check points.

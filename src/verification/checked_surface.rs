@@ -9,9 +9,9 @@ use sensitol_numeric::surrogate::Surrogate;
 
 /// Points of a surface in its core. Either tail has a quarter as many.
 const KNOTS: usize = 1 << 13;
-/// Fewest points of a surface in its core.
+/// Smallest number of points of a surface in its core.
 const FEWEST: usize = 1 << 9;
-/// Most multiplications for all points of a surface: a tenth of a second.
+/// Greatest number of multiplications for all points of a surface: a tenth of a second.
 const WORK: usize = 200_000_000;
 
 /// A surface at weighted points of the whole distribution.

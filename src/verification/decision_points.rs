@@ -18,13 +18,13 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::estimate::strata::{dot, length, unit};
 use crate::verification::check_points::{Design, IDLE, ON_AXIS, Wish};
 
-/// Fewest decision points.
+/// Smallest number of decision points.
 const FEWEST: usize = 6;
-/// Most decision points.
+/// Greatest number of decision points.
 const MOST: usize = 18;
 /// Divisor of the number of all other points.
 const PART: usize = 3;
-/// Most idle inputs of which all combinations of signs are checked.
+/// Greatest number of idle inputs of which all combinations of signs are checked.
 const COMBINED: usize = 3;
 /// Greatest length of a point at which many inputs deviate, in sigmas: the ends of the bands of four inputs.
 const ALL: f64 = 6.0;

@@ -8,7 +8,7 @@ use crate::verification::checked_surface::CheckedSurface;
 
 /// Greatest distance of a check point towards a limit, in sigmas.
 pub(super) const FARTHEST: f64 = 4.5;
-/// Most steps. A surface of second degree takes three to five.
+/// Greatest number of steps. A surface of second degree takes three to five.
 const STEPS: usize = 8;
 /// Step of the differences for the slope of the surface, in sigmas.
 const STEP: f64 = 0.01;
@@ -16,7 +16,7 @@ const STEP: f64 = 0.01;
 const NEAR: f64 = 0.01;
 /// Start of the search on the line, in sigmas.
 const START: f64 = 1.5;
-/// Most variables with a search. With more, the point lies on the line.
+/// Greatest number of variables with a search. With more, the point lies on the line.
 const SEARCHED: usize = 128;
 
 /// Likeliest point with a value beyond the limit, at most [`FARTHEST`] sigmas from the means.

@@ -49,7 +49,7 @@ pub(crate) const CORE: usize = 1 << 15;
 /// Points for the share of the variance that a surface leaves unexplained.
 pub(crate) const BESIDE: usize = 1 << 10;
 
-/// Most evaluations of a sample with `core` points in its core, including those of [`unexplained`].
+/// Greatest number of evaluations of a sample with `core` points in its core, including those of [`unexplained`].
 pub(crate) const fn most_points(core: usize) -> usize {
     PILOT + (switch_side::MOST + 2) * TAIL + core + BESIDE
 }
@@ -66,7 +66,7 @@ pub(crate) fn core_within(problem: &Problem, c: usize, most: Option<usize>) -> O
     halved.take_while(|&core| core >= TAIL).find(|&core| others + core <= most)
 }
 
-/// Most evaluations of [`unexplained`] followed by [`variance_shares_during`] over this number of inputs.
+/// Greatest number of evaluations of [`unexplained`] followed by [`variance_shares_during`] over this number of inputs.
 pub(crate) fn most_points_of_shares(inputs: usize) -> usize {
     BESIDE + most_points_of_exchange(inputs)
 }

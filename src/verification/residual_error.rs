@@ -46,7 +46,7 @@ const CLIPPED: f64 = 4.5;
 const NODES: f64 = 3.0;
 /// Divisor of the mean square of the idle inputs' differences, four sigmas out, for their effect on all assemblies.
 const IDLE: f64 = 50.0;
-/// Fewest random points with a value: fewer have no standard error worth the name.
+/// Smallest number of random points with a value: fewer have no useful standard error.
 const FEWEST: usize = 3;
 /// Contribution to the figures of the square of a residual that follows the output.
 const SQUARES: [f64; MOMENTS] = [0.0, 0.5, 2.0, 6.0];

@@ -215,7 +215,7 @@ pub(super) fn switch(
     if *change == Change::Edge { text } else { text.advise(Advice::Sample { points: None }) }
 }
 
-/// Most sets of contacts in a text; all are in the data.
+/// Greatest number of sets of contacts in a text; all are in the data.
 const SETS: usize = 4;
 
 pub(super) fn contact_switch(

@@ -16,9 +16,9 @@ use sensitol_numeric::names::{clean, clipped, is_hidden};
 use sensitol_report::WarningReport;
 use sensitol_report::document::{Detail, Style};
 
-/// Most warnings with the same code that are printed in full.
+/// Greatest number of warnings with the same code that are printed in full.
 const EACH: usize = 3;
-/// Most names that the line for the other warnings lists.
+/// Greatest number of names that the line for the other warnings lists.
 const NAMED: usize = 5;
 
 /// Options that set the look of all output.

@@ -10,7 +10,7 @@ use sensitol::simulation::Pace;
 
 /// Interval of frames. A model may be silent for longer than a reader of the bar waits.
 const FRAME: Duration = Duration::from_millis(200);
-/// Most moments that a meter keeps: the middle of the run is then known within 3 % of its length.
+/// Greatest number of moments that a meter keeps: the middle of the run is then located within 3 % of its length.
 const KEPT: usize = 128;
 /// Least run of a meter, in seconds. The start of processes and caches rules the time before.
 const LEAST_S: f64 = 1.0;

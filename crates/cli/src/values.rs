@@ -150,7 +150,7 @@ fn number(text: &str, holds: fn(f64) -> bool, must: &str) -> Result<f64, String>
     }
 }
 
-/// Most values of a sweep: more are probably a typing error.
+/// Greatest number of values of a sweep: more are probably a typing error.
 const MOST_STEPS: usize = 10_000;
 
 pub(super) fn over(text: &str) -> Result<Over, String> {

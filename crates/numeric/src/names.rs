@@ -28,9 +28,10 @@ pub fn clean(text: &str) -> String {
     text.chars().map(|c| if is_hidden(c) { '\u{fffd}' } else { c }).collect()
 }
 
-/// Most characters of a text from outside in a message: about twenty lines of a terminal.
+/// Greatest number of characters of a text from outside in a message: about twenty lines of a terminal.
 const MESSAGE: usize = 1600;
-/// Most letters of a name with a suggestion. A longer one is no slip of the hand, and comparing it takes the square of its length.
+/// Greatest number of letters of a name with a suggestion. A longer one is no slip of the hand, and comparing it takes the square of its
+/// length.
 const SUGGESTED: usize = 64;
 
 /// Text from outside that enters a message: an answer of a program, a quoted line, a name. The middle of a long one is removed.
@@ -96,8 +97,8 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     best.map(|(_, name)| name)
 }
 
-/// Least number of slips from one word to another (Damerau and Levenshtein). A slip is a letter too many, too few or wrong, or an exchange
-/// of two neighbours.
+/// Smallest number of slips from one word to another (Damerau and Levenshtein). A slip is a letter too many, too few or wrong, or an
+/// exchange of two neighbours.
 fn slips(from: &str, to: &str) -> usize {
     let (from, to): (Vec<char>, Vec<char>) = (from.chars().collect(), to.chars().collect());
     let most = from.len() + to.len();

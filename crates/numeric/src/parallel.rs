@@ -30,7 +30,7 @@ impl<T> Rooms<T> {
         Self(Mutex::new(Vec::new()))
     }
 
-    /// Does work in a free work space, or in a new one.
+    /// Runs a task in a free work space, or in a new one.
     pub fn within<R>(&self, new: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
         let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let left = free().pop();

@@ -25,9 +25,9 @@ use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// Significant digits of a cost.
 const COST: usize = 5;
-/// Most labels on the yield axis of the front. With more, only powers of ten of the rejects are labelled.
+/// Greatest number of labels on the yield axis of the front. With more, only powers of ten of the rejects are labelled.
 const LABELS: usize = 6;
-/// Most dimensions named as the reason why a requirement cannot be kept.
+/// Greatest number of dimensions named as the reason why a requirement cannot be kept.
 const NAMED: usize = 5;
 
 /// Bars of a quantity before and after a change.

@@ -10,7 +10,7 @@ use crate::figures::Named;
 /// Tables of an analysis, except the stacks.
 const TABLES: [&str; 6] = ["dimensions", "characteristics", "sensitivities", "interactions", "quantiles", "warnings"];
 
-/// Most bytes of a characteristic's name in a file name. File systems allow 255 in all.
+/// Greatest number of bytes of a characteristic's name in a file name. File systems allow 255 in all.
 const LONGEST: usize = 100;
 
 /// One file: its name and its text.

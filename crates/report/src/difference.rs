@@ -13,7 +13,7 @@ use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::capability::Capability;
 use sensitol_numeric::verdict::Verdict;
 
-/// Most changed inputs that a line names.
+/// Greatest number of changed inputs that a line names.
 const NAMED: usize = 4;
 /// Least change of a share of the variance that is worth a line.
 const SEEN: f64 = 0.005;

@@ -9,7 +9,7 @@ use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::Judged;
 
-/// Most correlations in the sentence. The table has all.
+/// Greatest number of correlations in the sentence. The table has all.
 const TOGETHER: usize = 6;
 
 /// Sentence with the strongest correlations of characteristics, or None if all are unknown.

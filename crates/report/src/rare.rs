@@ -54,7 +54,7 @@ impl RareReport {
     }
 }
 
-/// Most dimensions of a design point that are shown: those that move farthest.
+/// Greatest number of dimensions of a design point that are shown: those that move farthest.
 const SHOWN: usize = 6;
 
 impl RareReport {

@@ -8,7 +8,7 @@ use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
-/// Most significant digits of a value beside its requirement.
+/// Greatest number of significant digits of a value beside its requirement.
 const MOST_DIGITS: usize = 6;
 
 /// Returns a line for each requirement: the value, the required one, and the verdict. The target yield is left out, because it stands

@@ -4,7 +4,7 @@ use crate::document::number::{carried_ends, index, shape, share, short};
 use crate::document::{Blocks, Cell, DataTable, Section};
 use sensitol_numeric::sampling::SamplingInterval;
 
-/// Most samples that a sentence lists by name.
+/// Greatest number of samples that a sentence lists by name.
 const SAMPLES: usize = 3;
 
 /// Lists the samples with their sizes.

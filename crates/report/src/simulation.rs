@@ -58,9 +58,9 @@ impl SimulationReport {
     }
 }
 
-/// Most inputs whose Sobol' indices a terminal shows.
+/// Greatest number of inputs whose Sobol' indices a terminal shows.
 const FACTORS: usize = 8;
-/// Fewest intervals of a histogram that is drawn.
+/// Smallest number of intervals of a histogram that is drawn.
 const INTERVALS: usize = 5;
 
 impl SimulationReport {

@@ -232,7 +232,7 @@ fn with_unit(name: &str, unit: Option<&str>) -> String {
     unit.map_or(name.to_owned(), |unit| format!("{name} [{unit}]"))
 }
 
-/// Most values of the parameter on a terminal.
+/// Greatest number of values of the parameter on a terminal.
 const ROWS: usize = 19;
 
 impl SweptReport {

@@ -69,9 +69,9 @@ impl Ord for Node {
     }
 }
 
-/// Most nodes, which take a few seconds.
+/// Greatest number of nodes, which take a few seconds.
 const NODES: usize = 400_000;
-/// Most choices that are all examined if bounds would rest on a sample.
+/// Greatest number of choices that are all examined if bounds would rest on a sample.
 const ALL: usize = 20_000;
 /// Number of random choices that measure the error of sums of squares.
 const SAMPLE: usize = 400;

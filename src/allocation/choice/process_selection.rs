@@ -18,7 +18,7 @@ use crate::allocation::result::solver_result::{Solved, Starts};
 use crate::allocation::surface::response::Responses;
 use sensitol_numeric::dimension::Dimension;
 
-/// Most choices that are all examined.
+/// Greatest number of choices that are all examined.
 const ALL: usize = 20_000;
 
 /// True if some process has a distribution of its own.

@@ -35,7 +35,7 @@ pub(in crate::allocation) struct Setting<'a> {
     pub(in crate::allocation) anywhere: bool,
 }
 
-/// Most steps of a search.
+/// Greatest number of steps of a search.
 const STEPS: usize = 60;
 /// Number of starts between the tightest and the loosest tolerances.
 const BETWEEN: usize = 4;

@@ -7,7 +7,7 @@
 
 use crate::allocation::choice::option_list::{ListChoice, ListOption, Lists, ROUNDING, SAME, fits};
 
-/// Most states of one list. They take some hundred megabytes.
+/// Greatest number of states of one list. They take some hundred megabytes.
 const MOST: usize = 4_000_000;
 
 /// Step along the hull of a list: to the next option that uses more and costs less.

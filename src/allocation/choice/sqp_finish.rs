@@ -11,7 +11,7 @@ use sensitol_numeric::optimise::augmented_lagrangian::{
     EndConditions, SmoothProblem, SmoothSolution, ValueAndSlopes, cost,
 };
 
-/// Most unknowns and rows. Beyond it the dense matrices of a step take longer than a round of the model.
+/// Greatest number of unknowns and rows. Beyond it the dense matrices of a step take longer than a round of the model.
 const MOST: usize = 300;
 /// End conditions: the tolerance of rows and bounds, and the most steps.
 const NEAR: EndConditions = EndConditions { by: 1e-11, updates: 100 };

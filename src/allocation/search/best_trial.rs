@@ -25,7 +25,7 @@ use crate::problem::Problem;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::verdict::Verdict;
 
-/// Most repeated searches with stricter requirements.
+/// Greatest number of repeated searches with stricter requirements.
 const STRICTER: usize = 3;
 /// Factor of a miss by which a requirement is made stricter. The excess over 1 makes sure that the miss is made up for.
 const MARGIN: f64 = 1.01;

@@ -32,7 +32,7 @@ use sensitol_numeric::verdict::{Judged, Verdict};
 
 /// Greatest residual of tolerances that are reported as optimal.
 const OPTIMAL: f64 = 1e-6;
-/// Fewest points of a confirmation.
+/// Smallest number of points of a confirmation.
 const FEWEST_CONFIRM: u64 = 2;
 /// Greatest gap of a choice of processes that is reported as optimal.
 pub(in crate::allocation) const NO_GAP: f64 = 1e-9;

@@ -33,7 +33,7 @@ impl Goal {
         }
     }
 
-    /// Most that may be spent. Returns None for the least cost.
+    /// Greatest amount that may be spent. Returns None for the least cost.
     pub(in crate::allocation) fn cost_limit(self) -> Option<f64> {
         match self {
             Self::LeastCost => None,

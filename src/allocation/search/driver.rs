@@ -24,7 +24,7 @@ use sensitol_numeric::moments::Moments;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::requirement::Requirement;
 
-/// Most rounds, each with an analysis for new derivatives.
+/// Greatest number of rounds, each with an analysis for new derivatives.
 pub(in crate::allocation) const ROUNDS: usize = 20;
 
 /// Evaluations so far, and values that later rounds need.

@@ -18,7 +18,7 @@ use sensitol_numeric::optimise::minimise::minimise;
 const STEP: f64 = 1e-4;
 /// Gradient of the logarithm per sigma at which the descent ends.
 const REST: f64 = 1e-9;
-/// Most iterations of the descent.
+/// Greatest number of iterations of the descent.
 const DESCENT: u64 = 200;
 /// Greatest move at which nominal values chosen alone are at rest, in sigmas.
 const REST_ALONE: f64 = 1e-3;

@@ -24,8 +24,7 @@ use sensitol_numeric::optimise::augmented_lagrangian::{
 const STEP: f64 = 1e-5;
 /// End conditions: the tolerance of rows and bounds, and the most updates of the multipliers.
 const NEAR: EndConditions = EndConditions { by: 1e-9, updates: 40 };
-/// Most unknowns times rows, because differences take long. Beyond it nominal values move to the fewest rejects
-/// instead.
+/// Greatest number of unknowns times rows, because differences take long. Beyond it nominal values move to the fewest rejects instead.
 const MOST: usize = 2000;
 /// Greatest violation at which an end is a result.
 const KEPT: f64 = 1e-6;

@@ -28,15 +28,15 @@ use crate::allocation::search::trial::Trial;
 use crate::problem::Problem;
 use sensitol_numeric::optimise::separable::{PowerRow, SeparableProblem};
 
-/// Most trials of one search.
+/// Greatest number of trials of one search.
 const MOST: usize = 300;
-/// Most values of dimensions at all points of these trials: some seconds of a formula.
+/// Greatest number of values of dimensions at all points of these trials: some seconds of a formula.
 const MOST_VALUES: u64 = 1 << 27;
-/// Most rounds of steps, each with slopes of its own.
+/// Greatest number of rounds of steps, each with slopes of its own.
 const ROUNDS: usize = 16;
 /// Half of the difference in `ln T`: wide enough for a slope from samples of the model, and narrow beside a reach.
 const STEP: f64 = 0.05;
-/// Most free tolerances for slopes, each of which takes two trials.
+/// Greatest number of free tolerances for slopes, each of which takes two trials.
 const SLOPES: usize = 16;
 /// First and last reach of a step in `ln T`.
 const REACH: [f64; 2] = [0.5, 0.005];
@@ -44,15 +44,15 @@ const REACH: [f64; 2] = [0.5, 0.005];
 const GAIN: f64 = 2e-4;
 /// Step in `ln T` below which a search has converged.
 const STILL: f64 = 1e-3;
-/// Most places to which slopes are followed. Each corrects the values at the one before.
+/// Greatest number of places to which slopes are followed. Each corrects the values at the one before.
 const CORRECTIONS: usize = 4;
 /// Trials between a place that keeps everything and one that does not, after a step by slopes, which ends near it.
 const BETWEEN: usize = 3;
 /// Trials between the best place and the result of the search by derivatives.
 const APPROACH: usize = 5;
-/// Most exchanges that are tried before a list is left unchanged.
+/// Greatest number of exchanges that are tried before a list is left unchanged.
 const EXCHANGES: usize = 24;
-/// Most exchanges of one process for which those of two are tried.
+/// Greatest number of exchanges of one process for which those of two are tried.
 const PAIRED: usize = 60;
 /// First step of the common factor, and its halvings, down to a ten-thousandth.
 const FACTOR: (f64, usize) = (0.01, 7);

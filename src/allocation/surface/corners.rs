@@ -18,9 +18,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::assembly::{Directions, Points, Request, Responses, Run};
 use crate::problem::Problem;
 
-/// Most dimensions for a search of the box, which would otherwise take too long.
+/// Greatest number of dimensions for a search of the box, which would otherwise take too long.
 const MOST: usize = 40;
-/// Most dimensions for a search that begins at the best of all combinations of both ends and the middle.
+/// Greatest number of dimensions for a search that begins at the best of all combinations of both ends and the middle.
 const ALL: usize = 6;
 /// Places that are kept for every side.
 const KEPT: usize = 24;

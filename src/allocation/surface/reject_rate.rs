@@ -39,7 +39,7 @@ const NARROW: f64 = 1e-3;
 const EXACT: f64 = 1e-12;
 /// Part of the rejects that breaks several limits, up to which its slope is left out.
 const FEW: f64 = 1e-6;
-/// Most dimensions for these differences, which would otherwise take too long.
+/// Greatest number of dimensions for these differences, which would otherwise take too long.
 const MANY: usize = 60;
 /// Least share that is distinguished from 0.
 const LEAST: f64 = 1e-300;

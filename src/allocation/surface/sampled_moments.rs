@@ -74,8 +74,8 @@ impl SampledCorrection {
         [-WIDTH_STEP, WIDTH_STEP].map(libm::exp)
     }
 
-    /// Most groups. More would take over four million points for every round. Their surfaces stay uncorrected, and no
-    /// optimum is claimed.
+    /// Greatest number of groups. More would take over four million points for every round. Their surfaces stay uncorrected, and no optimum
+    /// is claimed.
     pub(in crate::allocation) const MOST_GROUPS: usize = 128;
     /// Greatest factor to which slopes are followed. A search within it stays clear of the kink where slopes end.
     pub(in crate::allocation) const REACH: f64 = 2.0;

@@ -31,7 +31,7 @@ const FAR: f64 = 0.7;
 const STEP: f64 = 1e-4;
 /// Relative accuracy of a root of the share.
 const NEAR: f64 = 1e-13;
-/// Most steps to bracket the root.
+/// Greatest number of steps to bracket the root.
 const STEPS: usize = 60;
 
 /// Change of a varying dimension with its tolerance.

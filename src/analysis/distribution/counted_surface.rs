@@ -19,7 +19,7 @@ const EFFORT: usize = 1 << 28;
 const STREAM: u64 = 1;
 /// Greatest count of random numbers (points times inputs). With many inputs, fewer points are drawn.
 const NUMBERS: usize = 4_000_000;
-/// Fewest points that are drawn, with any number of inputs.
+/// Smallest number of points that are drawn, with any number of inputs.
 const FEWEST: usize = 1 << 13;
 
 /// Values of the surface of one characteristic in ascending order, at `most` points or fewer.

@@ -29,18 +29,19 @@ const IDLE: f64 = 1e-10;
 const POINTS: usize = 1 << 12;
 /// Number of terms of the surface above which fewer points are used.
 const TERMS: usize = 1 << 10;
-/// Fewest points for a limit in the sampled branch.
+/// Smallest number of points for a limit in the sampled branch.
 const FEWEST: usize = 1 << 9;
-/// Most measured values of one input for which every point of a contour is a short sum.
+/// Greatest number of measured values of one input for which every point of a contour is a short sum.
 const ATOMS: usize = 64;
-/// Most terms at all points of a contour, if an input has more than [`ATOMS`] values. Above it the surface is counted at points instead.
+/// Greatest number of terms at all points of a contour, if an input has more than [`ATOMS`] values. Above it the surface is counted at
+/// points instead.
 const TERMS_OF_ATOMS: f64 = 1e7;
 /// Points of a contour times the part of sigma that has a density. The transform vanishes beyond 8 divided by the sigma of that part, and
 /// the distance of points is a third divided by the whole sigma.
 const POINTS_OF_SIGMA: f64 = 24.0;
 /// Greatest number of points of a contour.
 const MOST_POINTS: f64 = 2048.0;
-/// Most values of a step function that are listed.
+/// Greatest number of values of a step function that are listed.
 const STEPS: usize = 1 << 18;
 /// Tail probability at which a drawn density ends.
 const DRAWN: f64 = 1e-5;

@@ -2,7 +2,7 @@
 
 use sensitol_numeric::sampling::clopper_pearson;
 
-/// Most points that are stated. A model that answers in a microsecond takes a quarter of an hour for as many.
+/// Greatest number of points that are stated. A model that answers in a microsecond takes a quarter of an hour for as many.
 const MOST: u64 = 1_000_000_000;
 
 /// Smallest number of plain points whose 95 % interval (Clopper and Pearson 1934) excludes the share `allowed`, if the share `rejected` is

@@ -23,7 +23,7 @@ use sensitol_numeric::surrogate::{BlockMoments, InputShape, Inputs, Relocation, 
 
 /// Number of resamples with which an end of an interval is known to about a tenth of the width.
 const RESAMPLES: usize = 1000;
-/// Fewest resamples with which an interval is still meaningful.
+/// Smallest number of resamples with which an interval is still meaningful.
 const LEAST: usize = 200;
 /// Budget of multiplications for all resamples together, a second or two. Above it there are fewer resamples.
 const WORK: usize = 3_000_000_000;
@@ -33,7 +33,7 @@ const FIT: usize = 30_000;
 const VALUE: usize = 50;
 /// Groups of values that are left out in turn, of all samples together.
 const GROUPS: usize = 400;
-/// Fewest groups of values of each sample, even if there are many samples.
+/// Smallest number of groups of values of each sample, even if there are many samples.
 const LEAST_GROUPS: usize = 20;
 /// Curvature below this part of the slope is rounding, and needs no higher moment.
 const STRAIGHT: f64 = 1e-9;

@@ -33,13 +33,13 @@ use sensitol_numeric::surrogate::{Chaos, Places, Sparse, Surrogate};
 
 /// Number of parts into which the scramblings are divided.
 const PARTS: usize = 4;
-/// Most points evaluated by the method that a regression is also fitted to.
+/// Greatest number of points evaluated by the method that a regression is also fitted to.
 const FITTED: usize = 1 << 10;
-/// Most points of a regression in each scrambling.
+/// Greatest number of points of a regression in each scrambling.
 const KNOTS: usize = 1 << 12;
-/// Fewest points of a regression in each scrambling.
+/// Smallest number of points of a regression in each scrambling.
 const FEWEST: usize = 1 << 8;
-/// Most random numbers for the points of all scramblings together.
+/// Greatest number of random numbers for the points of all scramblings together.
 const NUMBERS: usize = 1 << 21;
 /// Root mean squares of the influence of a point on mean, sigma, skewness and kurtosis of a normal distribution, in its sigmas (Serfling
 /// 1980).

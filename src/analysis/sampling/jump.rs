@@ -18,7 +18,7 @@ use crate::analysis::CharacteristicAnalysis;
 const CURVED: f64 = 0.5;
 /// Curvature, as a part of sigma, below which an axis is not searched.
 pub(super) const MATTERS: f64 = 0.1;
-/// Most axes that are searched, the most curved ones.
+/// Greatest number of axes that are searched, the most curved ones.
 pub(super) const AXES: usize = 3;
 /// Halvings after which a side without a jump is dropped.
 const FIRST: usize = 3;

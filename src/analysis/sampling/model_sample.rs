@@ -18,14 +18,14 @@ use sensitol_numeric::capability::EstimatedQuantile;
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
 
-/// Most points of a cheap model.
+/// Greatest number of points of a cheap model.
 const MOST: u64 = 1 << 18;
-/// Fewest points for which the sample of a costly model is useful.
+/// Smallest number of points for which the sample of a costly model is useful.
 const FEWEST: u64 = 48;
-/// Fewest points of the first sample.
+/// Smallest number of points of the first sample.
 const FIRST: u64 = 1 << 10;
-/// Most points of strides with regressions. If the accuracy is not reached with them, a regression does not follow the model, and each
-/// stride fits all regressions anew.
+/// Greatest number of points of strides with regressions. If the accuracy is not reached with them, a regression does not follow the model,
+/// and each stride fits all regressions anew.
 const STRIDES: usize = 512;
 /// Part of a costly model's budget that strides may use (one in four), because the points of its sample are others.
 const COSTLY_PART: usize = 4;

@@ -12,7 +12,7 @@ use crate::warning::Figure;
 use sensitol_numeric::sampling::clopper_pearson;
 use sensitol_numeric::verdict::Verdict;
 
-/// Most points within a budget: as many as `simulate` takes for rare events of an external program.
+/// Greatest number of points within a budget: as many as `simulate` takes for rare events of an external program.
 const MOST: usize = 1000;
 
 /// Greatest number of points of the model in refuted tails, after `spent` evaluations. Only `auto` of a costly model with limits has any.

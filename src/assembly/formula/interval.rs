@@ -200,7 +200,7 @@ impl Interval {
         Self { lower: root_down(x.lower), upper, whole: x.whole }
     }
 
-    /// Returns `cos`, whose greatest values are at whole turns.
+    /// Returns the interval of `cos`, which is 1 at whole turns.
     pub(super) fn cos(&self) -> Self {
         if self.is_empty() {
             return Self::EMPTY;

@@ -11,8 +11,8 @@
 //! The search may fail, end on another sign of the determinant, or end far from its prediction. Then the solution is followed from the
 //! nominal dimensions to the point in adaptive steps. A path that cannot be followed is an error.
 //!
-//! Most points need no safeguards. They are solved side by side by full steps, in blocks of equations that depend on each other. A point
-//! whose steps do not become shorter at once takes the safeguarded search.
+//! Greatest number of points need no safeguards. They are solved side by side by full steps, in blocks of equations that depend on each
+//! other. A point whose steps do not become shorter at once takes the safeguarded search.
 //!
 //! # Derivatives
 //! The first derivatives solve `F_u u' = -F_x x'`, and the second ones the same system with second derivatives on the right. Both are

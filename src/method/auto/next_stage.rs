@@ -18,7 +18,7 @@ use crate::problem::Problem;
 const CHECKS: usize = 6;
 /// Estimated error, as part of the requested one, above which a second set of check points confirms the estimate.
 const CONFIRM: f64 = 0.1;
-/// Fewest dimensions for which a second set confirms the estimate.
+/// Smallest number of dimensions for which a second set confirms the estimate.
 const CONFIRM_FROM: usize = 5;
 /// Greatest number of sets of check points.
 const SETS: usize = 3;

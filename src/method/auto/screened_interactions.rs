@@ -22,7 +22,7 @@ const EXPLAINS: f64 = 0.2;
 const EXPLAINS_ODD: f64 = 0.5;
 /// Ratio of a product of curvatures to that of the slopes above which a pair needs all four corners.
 const SQUARE: f64 = 0.1;
-/// Fewest pairs of mirrored points for a fit.
+/// Smallest number of pairs of mirrored points for a fit.
 const FEWEST: usize = 4;
 /// Greatest plausible `t`. A larger one indicates a bad fit: a root has 3.
 const LARGEST: f64 = 6.0;

@@ -65,7 +65,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, conflicts_with = "rare")]
     pub(crate) sobol: bool,
 
-    /// Most evaluations of --sobol [default: 10000 of an external model]
+    /// Greatest number of evaluations of --sobol [default: 10000 of an external model]
     #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true, requires = "sobol")]
     pub(crate) budget: Option<u64>,
 
@@ -130,7 +130,7 @@ pub(crate) struct CompareArgs {
     #[command(flatten)]
     pub(crate) of: SampledArgs,
 
-    /// Most evaluations of one method
+    /// Greatest number of evaluations of one method
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     pub(crate) budget: Option<usize>,
 

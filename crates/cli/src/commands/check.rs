@@ -14,7 +14,7 @@ use sensitol_numeric::names::first_of;
 use sensitol_report::{SCHEMA, WarningReport};
 use sensitol_study::{AssemblyScene, CompletenessGap, Mobility, Study};
 
-/// Most names in a line.
+/// Greatest number of names in a line.
 const NAMED: usize = 8;
 
 pub(crate) fn run(asked: &CheckArgs, as_json: bool, look: Look) -> Result<Exit, Failure> {
@@ -40,7 +40,7 @@ struct PlanSize {
     varying: usize,
     characteristics: Vec<String>,
     method: &'static str,
-    /// Fewest and most evaluations.
+    /// Smallest and greatest number of evaluations.
     evaluations: [usize; 2],
 }
 
@@ -101,7 +101,7 @@ pub(crate) struct StudyCheck {
     varying: Option<usize>,
     characteristics: Option<Vec<String>>,
     method: Option<&'static str>,
-    /// Fewest and most evaluations of the method.
+    /// Smallest and greatest number of evaluations of the method.
     evaluations: Option<[usize; 2]>,
     /// Program that an analysis starts, with its arguments; null if it starts none.
     program: Option<Vec<String>>,

@@ -17,7 +17,7 @@ use sensitol_study::{AssemblyPoses, Externals, PartPose, Study};
 
 /// Version of the protocol (`adapters/PROTOCOL.md`).
 const VERSION: u32 = 1;
-/// Most points that may be sent ahead. Points that arrive together are evaluated together.
+/// Greatest number of points that may be sent ahead. Points that arrive together are evaluated together.
 const WINDOW: usize = 256;
 /// Digits of the study's hash that are part of its version.
 const DIGITS: usize = 16;

@@ -87,7 +87,7 @@ struct AxisReport {
     values: Vec<f64>,
 }
 
-/// Most dimensions listed beside their nodes.
+/// Greatest number of dimensions listed beside their nodes.
 const NAMED: usize = 8;
 /// Text for the count of a plan without differences.
 const EXACT: &str = "exact derivatives: the means, and the nominal values where they differ";

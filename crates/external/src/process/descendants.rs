@@ -10,7 +10,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Variable of the environment that holds the marks of all engines above a process.
 pub(super) const VARIABLE: &str = "SENSITOL_PROCESS";
-/// Most searches for one child: a process that was about to start another one at the first is found by the second.
+/// Greatest number of searches for one child: a process that was about to start another one at the first is found by the second.
 const SEARCHES: usize = 8;
 
 /// Mark of one child and its descendants.

@@ -7,7 +7,7 @@ use sensitol::assembly::NonRepeatable;
 pub(super) const SENTINEL: usize = usize::MAX;
 /// Windows of points after which a child is checked.
 const WINDOWS: usize = 16;
-/// Least number of points after which a child is checked.
+/// Smallest number of points after which a child is checked.
 const POINTS: usize = 50;
 /// Greatest difference of two answers that agree, as a fraction of the range that the model has shown.
 const NOISE: f64 = 1e-7;

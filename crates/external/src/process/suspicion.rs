@@ -13,7 +13,7 @@ use std::collections::{HashMap, HashSet};
 const KEPT: usize = 20_000;
 /// Part of all answers that is replayed.
 const PART: f64 = 0.05;
-/// Least number of replayed answers, besides the random ones.
+/// Smallest number of replayed answers, besides the random ones.
 const LEAST: usize = 5;
 /// Number of answers that are replayed in addition, independently of their score.
 const RANDOM: usize = 2;

@@ -9,7 +9,7 @@ const FALSE_ALARMS: f64 = 0.01;
 const SHARE: f64 = 0.1;
 /// Greatest number of values that is tested.
 const MOST: usize = 50;
-/// Fewest values of a test. Student's distribution by its moments needs more than 4 degrees of freedom.
+/// Smallest number of values of a test. Student's distribution by its moments needs more than 4 degrees of freedom.
 const LEAST: usize = 7;
 
 /// Indices of values that lie farther out than those of a normal sample of this size, farthest first.

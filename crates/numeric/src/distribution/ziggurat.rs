@@ -12,7 +12,7 @@ use crate::elementary::{Elementary, Exp, Ln, Work, on_this_processor};
 const LAYERS: usize = 1024;
 /// Beginning of the tail, which together with its rectangle is the first layer.
 const TAIL: f64 = 4.038_849_846_109_504;
-/// Fewest values for which a block pays.
+/// Smallest number of values for which a block pays.
 const FEW: usize = 8;
 /// Values that are tested at once for lying outside the inner part of their layer.
 const LOOK: usize = 32;

@@ -28,13 +28,13 @@ use simplex::{Column, Programme};
 
 /// Difference of the certified end and the yield of a distribution that was found, at which cells are no longer split.
 pub const CLOSE: f64 = 1e-6;
-/// Most rounds. A round splits the cells that matter by [`SPLIT`].
+/// Greatest number of rounds. A round splits the cells that matter by [`SPLIT`].
 const ROUNDS: usize = 24;
 /// Parts of a cell that matters.
 const SPLIT: usize = 4;
-/// Most cells: a program of this size takes some tenths of a second.
+/// Greatest number of cells: a program of this size takes some tenths of a second.
 const MOST: usize = 60_000;
-/// Most cells of a mixture of uniform distributions, whose mean shares over a cell are bounded in many slices.
+/// Greatest number of cells of a mixture of uniform distributions, whose mean shares over a cell are bounded in many slices.
 const MOST_OF_MIXTURES: usize = 1 << 10;
 /// Successive rounds without progress after which cells are no longer split: the bounds over a cell keep the ends apart then.
 const STALLED: usize = 3;

@@ -7,7 +7,7 @@ use crate::distribution_bounds::DistributionPromise;
 
 /// Reduced cost below which a column enters the basis. Values of columns are shares.
 const ENTERS: f64 = 1e-12;
-/// Most steps. Some tens are usual.
+/// Greatest number of steps. Some tens are usual.
 const STEPS: usize = 20_000;
 /// Least pivot, relative to the rows, which are scaled to the size 1.
 const PIVOT: f64 = 1e-11;

@@ -64,7 +64,7 @@ pub trait Elementary {
         }
     }
 
-    /// Maps one by one. Used if some arguments are outside the fast range.
+    /// Maps values one by one. Used if some arguments are outside the fast range.
     #[cold]
     #[inline(never)]
     fn map_apart(x: &[f64], out: &mut [f64]) {

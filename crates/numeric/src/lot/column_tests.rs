@@ -5,7 +5,7 @@ use crate::lot::reference_law::{chi_squared_two_sided, student_two_sided};
 use crate::lot::shape::{anderson_darling_normal, cramer_von_mises_of_shape};
 use crate::lot::{LotSample, LotTest};
 
-/// Fewest values with a test of the shape: the formula of the p-value holds from here on.
+/// Smallest number of values with a test of the shape: the formula of the p-value holds from here on.
 const LEAST_OF_SHAPE: usize = 8;
 
 /// Tests of measured values against an assumed distribution.

@@ -13,7 +13,7 @@ use crate::lot::LotSample;
 const STEPS: usize = 200;
 /// Steps of the fit of a cut normal distribution.
 const CUT_STEPS: usize = 400;
-/// Fewest values with a name.
+/// Smallest number of values with a name.
 const FEWEST: usize = 15;
 
 /// Most likely shape of values that are not normal.

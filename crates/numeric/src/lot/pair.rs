@@ -3,7 +3,7 @@
 use crate::distribution::standard_normal;
 use crate::lot::{LotFigure, LotTest, SIDE};
 
-/// Fewest rows with an interval: the variance of Fisher's `z` is `1/(n - 3)`.
+/// Smallest number of rows with an interval: the variance of Fisher's `z` is `1/(n - 3)`.
 const FEWEST: usize = 5;
 /// Largest magnitude of a correlation whose inverse hyperbolic tangent is used.
 const LARGEST: f64 = 1.0 - 1e-12;

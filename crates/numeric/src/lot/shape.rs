@@ -16,9 +16,9 @@ use crate::lot::LotSample;
 const SEED: u64 = 1;
 /// Values drawn for one p-value: some tenths of a second for the slowest quantile functions.
 const DRAWN: usize = 400_000;
-/// Most samples: more digits of a p-value than these give have no use.
+/// Greatest number of samples: more digits of a p-value than these give have no use.
 const SAMPLES: usize = 2000;
-/// Fewest samples: the tail is fitted to a tenth of them.
+/// Smallest number of samples: the tail is fitted to a tenth of them.
 const FEWEST: usize = 200;
 /// Share of the samples to which the exponential tail is fitted.
 const TAIL: f64 = 0.1;

@@ -47,7 +47,7 @@ pub struct SmoothProblem<'a> {
 pub struct EndConditions {
     /// Greatest violation of rows and bounds.
     pub by: f64,
-    /// Most updates of the multipliers.
+    /// Greatest number of updates of the multipliers.
     pub updates: usize,
 }
 

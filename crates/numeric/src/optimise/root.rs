@@ -6,7 +6,7 @@
 use argmin::core::{CostFunction, Error, IterState, Problem, Solver, State};
 use argmin::solver::brent::BrentRoot;
 
-/// Most steps. Interpolation takes some 10, and bisection from one power of two to the next 52.
+/// Greatest number of steps. Interpolation takes some 10, and bisection from one power of two to the next 52.
 const STEPS: usize = 200;
 
 /// Increasing function with its values at both ends of the bracket.

@@ -152,7 +152,7 @@ pub const KEPT: f64 = 1e-13;
 const FLAT: f64 = 1e-12;
 /// Most Newton steps on the dual between two sweeps.
 const NEWTON: usize = 60;
-/// Most sweeps over the multipliers.
+/// Greatest number of sweeps over the multipliers.
 const SWEEPS: usize = 40;
 
 impl<U: CostedUnknown> SeparableProblem<'_, U> {
@@ -472,7 +472,7 @@ fn least_near(
     [(min, low), (max, high)]: [(f64, f64); 2],
     near: f64,
 ) -> Option<(f64, f64, f64)> {
-    /// Most steps of Newton's method from a near place.
+    /// Greatest number of steps of Newton's method from a near place.
     const STEPS: usize = 8;
     let mut x = libm::log(near);
     for _ in 0..STEPS {

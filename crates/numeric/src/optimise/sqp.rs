@@ -13,7 +13,7 @@ use crate::optimise::quadratic_program::{Quadratic, Step, dot};
 const LONGEST: f64 = 1.5;
 /// Least fall of the merit, as a part of the predicted one.
 const FALL: f64 = 1e-4;
-/// Most halvings of a step until the merit falls.
+/// Greatest number of halvings of a step until the merit falls.
 const HALVINGS: i32 = 25;
 /// Least and greatest weight of the excess of rows. Greater ones lose digits beside an objective near 1.
 const WEIGHTS: [f64; 2] = [1e-6, 1e6];

@@ -26,7 +26,7 @@ impl Losable for Estimate {
     }
 }
 
-/// Fewest values of a sample for which moments have standard errors.
+/// Smallest number of values of a sample for which moments have standard errors.
 pub const FEWEST: u64 = 10;
 
 /// Estimates of the four moments from a sample of independent values.

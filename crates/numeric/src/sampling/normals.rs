@@ -9,7 +9,7 @@ use crate::sampling::stream::Stream;
 /// Greatest number of variables for which Sobol' points are used. With more, a few thousand of them are no more even than random points.
 const QUASI: usize = 256;
 
-/// Fewest numbers in all columns for which every variable becomes a parallel task.
+/// Smallest number of numbers in all columns for which every variable becomes a parallel task.
 const MANY: usize = 1 << 17;
 
 /// Points of independent standard normal variables: Sobol' points, scrambled anew in every stream, or random ones for many variables.

@@ -6,7 +6,7 @@
 //!
 //! Source: Gamboa, Gremaud, Klein and Lagnoux (2022), Bernoulli 28, 2345. The error is that of the jackknife that leaves out one point.
 
-/// Fewest points of a sample. With fewer, neighbours are too far apart.
+/// Smallest number of points of a sample. With fewer, neighbours are too far apart.
 const FEWEST: usize = 16;
 
 /// First-order index of an input and its standard error. Returns None if there are too few points or if `y` does not vary.

@@ -41,7 +41,7 @@ const CANDIDATES: usize = 1200;
 const CURVED: usize = 16;
 /// Number of the most important inputs that have products of three and four factors.
 const SEVERAL: usize = 10;
-/// Least number of points for every column that is chosen.
+/// Smallest number of points for every column that is chosen.
 const POINTS: usize = 3;
 /// Greatest number of columns in a regression.
 const COLUMNS: usize = 80;

@@ -14,7 +14,7 @@ use crate::surrogate::sampled_remainder::BLOCKS;
 
 /// Rough bound for the operations of the sample.
 const EFFORT: usize = 1 << 27;
-/// Least number of points of the sample, also if the bound for the operations is exceeded.
+/// Smallest number of points of the sample, also if the bound for the operations is exceeded.
 const FEWEST: usize = 1 << 14;
 /// Greatest number of points of the sample.
 const MOST: usize = 1 << 20;

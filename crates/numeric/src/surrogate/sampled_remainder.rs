@@ -12,7 +12,7 @@ use crate::surrogate::parabolas::Parabolas;
 pub(super) const BLOCKS: u64 = 64;
 /// Rough bound for the operations of a sample.
 const EFFORT: usize = 1 << 26;
-/// Least number of points of a sample, also if the bound for the operations is exceeded.
+/// Smallest number of points of a sample, also if the bound for the operations is exceeded.
 const FEWEST: usize = 1 << 13;
 /// Greatest number of points of a sample.
 const MOST: usize = 1 << 19;

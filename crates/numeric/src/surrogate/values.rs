@@ -11,7 +11,7 @@ use crate::surrogate::{Surrogate, Univariate};
 const TILE: usize = 32;
 /// Rows of a block: their sums stay in the nearest cache while all parts are added.
 const BLOCK: usize = 1024;
-/// Least number of inputs for which the products of a tile are worth a task.
+/// Smallest number of inputs for which the products of a tile are worth a task.
 const MANY: usize = 64;
 
 impl Surrogate {

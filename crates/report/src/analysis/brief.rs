@@ -15,7 +15,8 @@ use crate::requirement::loud;
 use sensitol::analysis::CharacteristicAnalysis;
 use sensitol_numeric::verdict::Verdict;
 
-/// Most characteristics that all have a line at the end of a report, and most lines there. More would push the last section off the screen.
+/// Greatest number of characteristics that all have a line at the end of a report, and greatest number of lines there. More would push the
+/// last section off the screen.
 const CLOSING: usize = 10;
 /// Number of contributors in a line. A line with two fits a terminal in most cases.
 const NAMED: usize = 2;

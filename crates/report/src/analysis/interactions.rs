@@ -11,9 +11,9 @@ use sensitol::analysis::{
     CharacteristicAnalysis, DerivativeOrigin, EstimatedShare, IndexSource, Interaction, SobolIndices, VerificationKind,
 };
 
-/// Most interactions on a terminal unless all are requested.
+/// Greatest number of interactions on a terminal unless all are requested.
 pub(crate) const SHOWN: usize = 2;
-/// Most interactions on a page.
+/// Greatest number of interactions on a page.
 pub(crate) const SHOWN_ON_PAGE: usize = 24;
 
 /// Parts of a document on the interactions of a characteristic.

@@ -12,7 +12,7 @@ use sensitol::analysis::{CharacteristicAnalysis, IndexSource, Sensitivity};
 use sensitol::method::{ErrorEstimate, ErrorSource};
 use sensitol_numeric::names::element;
 
-/// Most contributors on a terminal.
+/// Greatest number of contributors on a terminal.
 const CONTRIBUTORS: usize = 6;
 /// Name of the first figure.
 const FIRST_FIGURE: &str = "nominal";

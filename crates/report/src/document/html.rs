@@ -5,7 +5,7 @@ use crate::document::svg::{escaped, figure};
 use crate::document::{Bar, Bars, Cell, Chart, DataTable, Document, Element, Fill, Flow, Line, Section, Tone, spread};
 use sensitol_numeric::names::clean;
 
-/// Most rows of a sweep's table that is shown unfolded.
+/// Greatest number of rows of a sweep's table that is shown unfolded.
 const FOLDED: usize = 6;
 
 /// Writes the part before all sections as the summary.

@@ -72,7 +72,7 @@ pub fn plain(value: f64) -> String {
     if exponent.len() + 2 < text.len() { exponent } else { text }
 }
 
-/// Most significant digits of a computed value.
+/// Greatest number of significant digits of a computed value.
 const MOST_DIGITS: i32 = 6;
 /// Least and most digits of sigma that a value beside it resolves. Three digits tell a mean from a limit to a hundredth of sigma.
 const SIGMA_DIGITS: [i32; 2] = [3, 5];
@@ -243,7 +243,7 @@ pub(crate) fn unrejected(rejected: f64) -> String {
 
 /// Formats a required yield in percent, with the digits that the study has. A computed one has more, and is rounded as any yield.
 pub(crate) fn target_yield(yield_: f64) -> String {
-    /// Most letters of a number that a person writes, such as 99.999999.
+    /// Greatest number of letters of a number that a person writes, such as 99.999999.
     const WRITTEN: usize = 9;
     // Rounded, because the product by 100 adds digits.
     let percent = format!("{}", (1e11 * yield_).round() / 1e9);

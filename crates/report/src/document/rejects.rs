@@ -2,7 +2,7 @@
 
 use crate::document::number::{FEWEST, power_of_ten, share, significant};
 
-/// Most significant digits of parts per million.
+/// Greatest number of significant digits of parts per million.
 const DIGITS: i32 = 4;
 /// Text of a yield whose interval reaches 0.
 pub(crate) const UNKNOWN_YIELD: &str = "unknown";

@@ -20,7 +20,7 @@ struct Sheet {
     height: f64,
     /// Margins: left, right, above, below.
     margin: [f64; 4],
-    /// Fewest steps of an axis with round numbers: horizontal, vertical.
+    /// Smallest number of steps of an axis with round numbers: horizontal, vertical.
     ticks: [f64; 2],
     /// True if the style sheet of a page sets the colours.
     page: bool,

@@ -59,7 +59,7 @@ pub struct DataTable {
     pub rows: Vec<Vec<Cell>>,
     /// Indices of the rows that readers see, in their order. CSV has all rows.
     pub view: Vec<usize>,
-    /// Most rows that a terminal shows unless everything is requested, and most rows of a page.
+    /// Greatest number of rows that a terminal shows unless everything is requested, and on a page.
     pub most: [usize; 2],
     /// Hint that a terminal prints if it does not show all rows.
     pub rest: String,

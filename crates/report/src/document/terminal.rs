@@ -39,7 +39,7 @@ const GAP: usize = 2;
 const SHORTEST: usize = 8;
 /// Greatest width that the column of labels keeps if a table is too wide. A longer label stands on a line of its own.
 const LABEL: usize = 20;
-/// Most lines of a list unless everything is shown.
+/// Greatest number of lines of a list unless everything is shown.
 const LINES: usize = 3;
 /// Space for "and N more" in the last line of a list.
 const MORE: usize = 20;

@@ -21,7 +21,7 @@ pub(super) struct Row {
     beside: String,
 }
 
-/// Most rows that are printed: the five figures of three characteristics. More would take a page of their own.
+/// Greatest number of rows that are printed: the five figures of three characteristics. More would take a page of their own.
 const PRINTED_ROWS: usize = 15;
 
 /// Headings of an analysis: value, error, second figure.

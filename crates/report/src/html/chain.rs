@@ -11,7 +11,7 @@ use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 
 /// Greatest deviation of a slope from 1 or -1 for a link of a dimension chain.
 const STRAIGHT: f64 = 0.05;
-/// Most links of a chain that is drawn.
+/// Greatest number of links of a chain that is drawn.
 const LINKS: usize = 24;
 
 /// Draws the dimension chain as arrows, each from the end of the one before. Returns None if the characteristic is not a sum and

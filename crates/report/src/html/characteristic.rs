@@ -14,9 +14,9 @@ use sensitol::analysis::CharacteristicAnalysis;
 
 /// Columns that the table of all dimensions has as well.
 const OF_INPUTS: [&str; 3] = ["nominal", "tolerance", "unit"];
-/// Most characteristics whose details are printed. Paper of more would have more than five pages.
+/// Greatest number of characteristics whose details are printed. Paper of more would have more than five pages.
 const DETAILED: usize = 1;
-/// Most characteristics that are printed with density and contributions. The verdict has all of them.
+/// Greatest number of characteristics that are printed with density and contributions. The verdict has all of them.
 pub(super) const PRINTED: usize = 3;
 
 /// Section of a characteristic in two parts.

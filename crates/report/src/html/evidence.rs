@@ -15,7 +15,7 @@ use sensitol_numeric::pearson::Pearson;
 
 /// Least visible shift of the mean, as a part of sigma.
 const SEEN: f64 = 0.01;
-/// Most rows of the table of shifts.
+/// Greatest number of rows of the table of shifts.
 const SHIFTS: usize = 12;
 /// Share at which the drawing of a tail begins.
 const FROM: f64 = 0.1;

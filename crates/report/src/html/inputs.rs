@@ -13,9 +13,9 @@ use sensitol::analysis::{CharacteristicAnalysis, Sensitivity};
 
 /// Dimensions that are shown; the others are folded.
 const ROWS: usize = 12;
-/// Most characteristics side by side.
+/// Greatest number of characteristics side by side.
 const SIDE: usize = 6;
-/// Most characteristics whose slopes fit on paper.
+/// Greatest number of characteristics whose slopes fit on paper.
 const SLOPES: usize = 2;
 /// Titles of the columns of a dimension itself; true if right-aligned.
 const OWN: [(&str, bool); 7] = [

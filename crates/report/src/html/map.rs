@@ -7,7 +7,7 @@ use crate::document::svg::escaped;
 use crate::figures::Named;
 use sensitol::analysis::CharacteristicAnalysis;
 
-/// Most dimensions of the map, the most influential first.
+/// Greatest number of dimensions of the map, the most influential first.
 const MAPPED: usize = 16;
 /// Least share of the variance at which an interaction is drawn.
 const SEEN: f64 = 1e-4;

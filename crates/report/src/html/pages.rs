@@ -16,7 +16,7 @@ use sensitol_numeric::json_form::finite;
 use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::Verdict;
 
-/// Most values of a sweep that are listed one by one.
+/// Greatest number of values of a sweep that are listed one by one.
 const NAMED: usize = 6;
 
 /// Parts of a page as markup.

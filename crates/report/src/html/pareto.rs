@@ -10,13 +10,13 @@ use crate::figures::{Figures, Named};
 use crate::{DimensionReport, Report};
 use sensitol::analysis::{CharacteristicAnalysis, EstimatedShare, Sensitivity};
 
-/// Most rows of a diagram. Of more rows, those with shares below `SMALL` are folded into one.
+/// Greatest number of rows of a diagram. Of more rows, those with shares below `SMALL` are folded into one.
 const ROWS: usize = 12;
 /// Share of the variance below which a row of a long diagram is folded.
 const SMALL: f64 = 5e-3;
-/// Most rows of a diagram, even if more have large shares.
+/// Greatest number of rows of a diagram, even if more have large shares.
 const MOST: usize = 24;
-/// Most dimensions without influence that are listed by name.
+/// Greatest number of dimensions without influence that are listed by name.
 const NAMED: usize = 24;
 /// Height of a row's drawing, in units of its view box. The running sum continues from row to row.
 const TALL: u32 = 32;

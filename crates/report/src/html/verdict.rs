@@ -24,7 +24,7 @@ use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::sampling::one_error;
 use sensitol_numeric::verdict::{Judged, Verdict};
 
-/// Most claims of one kind in the sentence.
+/// Greatest number of claims of one kind in the sentence.
 const NAMED: usize = 6;
 /// Least reject rate that the sentence prints as a number.
 const NONE: f64 = 1e-9;

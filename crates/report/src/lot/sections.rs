@@ -9,7 +9,7 @@ use sensitol::lot::{
     CharacteristicInLot, DifferenceShare, DimensionInLot, LotComparison, LotVerdict, PredictedFigures,
 };
 
-/// Most dimensions whose part in a difference is listed in a terminal.
+/// Greatest number of dimensions whose part in a difference is listed in a terminal.
 const LISTED: usize = 8;
 
 /// Row of a table of predictions and measurements.

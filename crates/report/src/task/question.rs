@@ -78,7 +78,7 @@ pub enum Asked {
         cost: Option<CostName>,
         /// The goal in place of the least cost.
         goal: Option<GoalName>,
-        /// The most that may be spent on it.
+        /// Greatest amount that may be spent on it.
         cost_limit: Option<f64>,
     },
 }

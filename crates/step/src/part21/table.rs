@@ -134,7 +134,7 @@ impl<'a> EntityTable<'a> {
     /// Entity of this number. Returns None if there is none.
     pub fn get(&self, id: u64) -> Option<Entity<'_>> {
         let first = self.records.first()?.id;
-        // Most files number their entities without gaps.
+        // Greatest number of files number their entities without gaps.
         let guess = usize::try_from(id.checked_sub(first)?).ok()?;
         let record = match self.records.get(guess) {
             Some(record) if record.id == id => record,

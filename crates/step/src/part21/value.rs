@@ -3,9 +3,9 @@
 use super::error::{Part21Error, Part21Fault};
 use super::scan::Cursor;
 
-/// Most lists inside lists. The schemas have at most five.
+/// Greatest number of lists inside lists. The schemas have at most five.
 const DEEPEST: usize = 32;
-/// Most values of one entity. The longest list of a valid part is that of the faces of its shell.
+/// Greatest number of values of one entity. The longest list of a valid part is that of the faces of its shell.
 const MOST_VALUES: usize = 1 << 22;
 
 /// A value of an argument. Texts are slices of the file.

@@ -30,7 +30,7 @@ const SHELLS: [&str; 6] = [
 pub(super) const FACES: [&str; 3] = ["ADVANCED_FACE", "FACE_SURFACE", "ORIENTED_FACE"];
 /// Types of datum targets.
 pub(super) const TARGETS: [&str; 2] = ["PLACED_DATUM_TARGET_FEATURE", "DATUM_TARGET"];
-/// Most entities that all relations together lead to. A part of 200 MB has some ten million edges.
+/// Greatest number of entities that all relations together lead to. A part of 200 MB has some ten million edges.
 const MOST: usize = 20_000_000;
 
 /// Number of visited entities, over all aspects of a file.

@@ -7,7 +7,7 @@ use super::measure::{StepMeasure, measure};
 use super::placement::{Placement, placement};
 use crate::part21::{Entity, EntityTable, Part21Error, StepValue};
 
-/// Most levels from a datum system to a datum: compartment, common datum, element, datum.
+/// Greatest number of levels from a datum system to a datum: compartment, common datum, element, datum.
 const DEEPEST: usize = 8;
 
 /// A datum target.

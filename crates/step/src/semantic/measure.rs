@@ -2,7 +2,7 @@
 
 use crate::part21::{Entity, EntityTable, Part21Error, StepValue};
 
-/// Most units that are defined by others in a row. Files have at most two: degrees by radians, inches by millimetres.
+/// Greatest number of units that are defined by others in a row. Files have at most two: degrees by radians, inches by millimetres.
 const DEEPEST: usize = 8;
 
 /// Unit of a value.

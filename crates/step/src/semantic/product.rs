@@ -6,7 +6,7 @@ use super::measure::{StepUnit, unit_of};
 use super::placement::{Placement, placement};
 use crate::part21::{Entity, EntityTable, Part21Error, Part21Fault, StepValue};
 
-/// Most placed parts of an assembly. A study has far fewer.
+/// Greatest number of placed parts of an assembly. A study has far fewer.
 const MOST_PLACED: usize = 10_000;
 
 /// A part at its place in an assembly.

@@ -10,9 +10,9 @@ pub(super) const SAME_LENGTH: f64 = 1e-6;
 pub(super) const SAME_DIRECTION: f64 = 1e-5;
 /// Name of a round face for sorting: pieces of one surface have equal names, up to rounding.
 type RoundKey = [i64; 4];
-/// Most comparisons of two faces of a part: some seconds.
+/// Greatest number of comparisons of two faces of a part: some seconds.
 const MOST_COMPARISONS: usize = 20_000_000;
-/// Most faces of a group that are compared with each other. Larger groups are whole parts, whose faces stay apart.
+/// Greatest number of faces of a group that are compared with each other. Larger groups are whole parts, whose faces stay apart.
 const MOST_COMPARED: usize = 2000;
 
 /// True if two lines are one line.

@@ -6,7 +6,7 @@ use crate::semantic::{Placement, cross, dot, minus, plus};
 
 /// Greatest clearance of a pin in its hole, of the diameter of the hole.
 const MOST_CLEARANCE: f64 = 0.1;
-/// Most joints that are proposed. A list that is longer is read by nobody.
+/// Greatest number of joints that are proposed. A list that is longer is read by nobody.
 const MOST_JOINTS: usize = 200;
 
 /// A face at its place.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 /// Digits after the point of a coordinate: 1e-9 of the unit is below every accuracy of a CAD system, and hides noise of conversions.
 const DECIMALS: i32 = 9;
-/// Most characters of a name.
+/// Greatest number of characters of a name.
 const LONGEST_NAME: usize = 40;
 
 /// Number with at most nine digits after the point.

@@ -14,7 +14,7 @@ use sensitol_numeric::characteristic::Characteristic;
 use sensitol_numeric::dimension::Dimension;
 use sensitol_numeric::names::nearest;
 
-/// Most values of a stock. Each is a value of the characteristic at every point.
+/// Greatest number of values of a stock. Each is a value of the characteristic at every point.
 const MOST_VALUES: usize = 1000;
 /// Rounding of the number of steps in a range, as a part of a step.
 const STEP_ROUNDING: f64 = 1e-6;

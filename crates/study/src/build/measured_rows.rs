@@ -11,7 +11,7 @@ use sensitol::warning::Warning;
 use sensitol_numeric::correlation::{JointLaw, Pair, Rows};
 use sensitol_numeric::names::nearest;
 
-/// Least number of common rows: fewer do not show a correlation of columns.
+/// Smallest number of common rows: fewer do not show a correlation of columns.
 const LEAST: usize = 5;
 /// Greatest number of lines that a warning names.
 const NAMED: usize = 5;

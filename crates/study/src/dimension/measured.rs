@@ -13,7 +13,7 @@ use sensitol_numeric::dimension::DimensionFault;
 use sensitol_numeric::distribution::{Distribution, DistributionError, Measured, PearsonLaw, Resample, outliers};
 use sensitol_numeric::names::nearest;
 
-/// Least number of values: four moments of four values have no meaning.
+/// Smallest number of values: four moments of four values have no meaning.
 const LEAST: usize = 5;
 /// Number of values below which a warning is given: the moments from the third on are then guesses.
 const SMALL: usize = 30;

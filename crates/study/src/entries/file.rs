@@ -236,7 +236,7 @@ pub(crate) struct DimensionEntry {
     #[serde(default, rename = "count")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::count"))]
     pub(crate) _count: Option<IgnoredAny>,
-    /// The unit of its numbers: a label, checked or converted as `units` says.
+    /// The unit of its numbers: a label, checked or converted according to `units`.
     pub(crate) unit: Option<String>,
     /// Distribution: the name of a kind, or a table with its parameters.
     #[serde(default, deserialize_with = "distribution")]
@@ -395,7 +395,7 @@ pub(crate) struct CharacteristicEntry {
     pub(crate) maximum: Option<Spanned<MotionEntry>>,
     /// Another characteristic. The yield and the target_yield then refer to the assemblies within its limits only.
     pub(crate) given: Option<Spanned<String>>,
-    /// The unit of the result and its limits: a label, checked or converted as `units` says.
+    /// The unit of the result and its limits: a label, checked or converted according to `units`.
     pub(crate) unit: Option<String>,
     /// Lower limit; without a limit there is no yield.
     pub(crate) lower: Option<Spanned<f64>>,

@@ -10,7 +10,7 @@ use crate::expand::{Expanded, Origin, Tree, Value, quoted, wrong_type};
 use crate::tree::Key;
 use sensitol::assembly::formula::Formula;
 
-/// Most equal parts: more are a typing error.
+/// Greatest number of equal parts: more are a typing error.
 const MOST: i64 = 1000;
 /// Ending of the name of the formula that adds a group up: three bytes, so that the name in backquotes is as long as `sum(..)`.
 const SUM: &str = ".\u{3a3}";

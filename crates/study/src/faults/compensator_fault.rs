@@ -23,7 +23,7 @@ pub enum CompensatorFault {
         step: f64,
         /// Number of values.
         count: f64,
-        /// Most values.
+        /// Greatest number of values.
         most: usize,
     },
     /// A list of too many values.
@@ -33,7 +33,7 @@ pub enum CompensatorFault {
         dimension: String,
         /// Number of values.
         count: usize,
-        /// Most values.
+        /// Greatest number of values.
         most: usize,
     },
     /// A dimension that is adjusted twice.

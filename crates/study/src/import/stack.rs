@@ -15,7 +15,7 @@ use crate::import::title::TitleRows;
 use crate::import::words::{is_total, names_both_limits};
 use sensitol_numeric::names::first_of;
 
-/// Most equal parts of a row: more are a typing error.
+/// Greatest number of equal parts of a row: more are a typing error.
 const MOST_EQUAL: f64 = 1000.0;
 /// Difference of a total from the sum of its rows, in parts of the largest nominal value: rounding errors of a spreadsheet.
 const SUM_ERROR: f64 = 1e-6;

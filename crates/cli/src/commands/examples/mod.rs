@@ -15,7 +15,7 @@ use sensitol_numeric::names::{first_of, nearest};
 
 include!(concat!(env!("OUT_DIR"), "/examples.rs"));
 
-/// Most known names that an error lists.
+/// Greatest number of known names that an error lists.
 const NAMED: usize = 8;
 
 #[derive(Debug, Args)]

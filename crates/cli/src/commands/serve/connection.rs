@@ -6,7 +6,7 @@ use std::net::{Shutdown, TcpListener, TcpStream};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Most connections at once: a page has up to six, each with a thread and a descriptor.
+/// Greatest number of connections at once: a page has up to six, each with a thread and a descriptor.
 const MOST: usize = 64;
 /// Connections that are allowed in any case: those of two pages.
 const LEAST: usize = 16;

@@ -17,7 +17,7 @@ use sensitol_study::{Study, StudyText};
 
 /// Greatest depth of searched subfolders.
 const DEEPEST: usize = 4;
-/// Most studies that are listed.
+/// Greatest number of studies that are listed.
 const MOST: usize = 1000;
 /// Longest wait for a change of a file.
 const WAIT: Duration = Duration::from_secs(20);

@@ -9,7 +9,7 @@ use crate::commands::serve::connection::Connection;
 
 /// Longest header, in bytes. Browsers send about 1 kB.
 const HEADER: usize = 16 << 10;
-/// Most fields of a header. Browsers send about 20.
+/// Greatest number of fields of a header. Browsers send about 20.
 const FIELDS: usize = 100;
 /// Time in which a header arrives as a whole.
 const HEADER_TIME: Duration = Duration::from_secs(10);

@@ -28,7 +28,7 @@ const LAST_CHEAP: usize = 1 << 14;
 const LAST_PERTURBED: usize = 1 << 13;
 /// Factor from the difference of windows to the error of a contour that ended early. Such windows may agree by chance.
 const ENDED_EARLY: f64 = 40.0;
-/// Fewest points of a contour from which a figure is computed.
+/// Smallest number of points of a contour from which a figure is computed.
 const FEWEST: usize = 8;
 /// Relative size of the remainder at which the sum ends.
 const ENDED: f64 = 1e-14;
@@ -324,9 +324,9 @@ impl Inversion {
 /// Number of points of a sum.
 #[derive(Debug, Clone, Copy)]
 enum Extent {
-    /// Fewest points; more are added until two windows agree.
+    /// Smallest number of points; more are added until two windows agree.
     From(usize),
-    /// Fewest points of a quantile; more are added until two windows agree well enough.
+    /// Smallest number of points of a quantile; more are added until two windows agree well enough.
     Nearly(usize),
     /// Points and window of another sum.
     Fixed(Window),

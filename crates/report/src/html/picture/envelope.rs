@@ -1,6 +1,6 @@
 //! Envelope of points: the faces of their convex hull, which stand for a part whose shape the study does not give.
 
-/// Most points of an envelope. The search for faces takes the fourth power of it.
+/// Greatest number of points of an envelope. The search for faces takes the fourth power of it.
 const MOST: usize = 40;
 /// Distance, relative to the extent of the points, below which points are one, or lie in one plane.
 const SAME: f64 = 1e-6;

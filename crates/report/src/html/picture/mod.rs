@@ -33,9 +33,9 @@ pub(super) const STYLE: &str = include_str!("picture.css");
 pub(super) const SCRIPT: &str = include_str!("picture.js");
 /// Shares of the variance from which a feature has the next colour and thickness.
 const HEATS: [f64; 4] = [0.01, 0.05, 0.15, 0.35];
-/// Most features with a number in the picture.
+/// Greatest number of features with a number in the picture.
 const NUMBERED: usize = 8;
-/// Most features that the caption names.
+/// Greatest number of features that the caption names.
 const NAMED: usize = 3;
 
 /// Section of a page with its data.

@@ -8,7 +8,7 @@ use crate::document::number::{UNKNOWN, percent, plural};
 use crate::document::svg::escaped;
 use sensitol_study::AssemblyScene;
 
-/// Most rows beside the picture.
+/// Greatest number of rows beside the picture.
 const ROWS: usize = NUMBERED;
 /// Share of the variance below which a row is left out.
 const SMALL: f64 = 5e-4;

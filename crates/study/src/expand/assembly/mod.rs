@@ -360,7 +360,7 @@ fn write(expanded: &mut Expanded, read: &Read, closed: ClosedAssembly, values: &
         equations.push((key(&entry.span, &equation.name), text(&entry.span, equation.formula)));
     }
     let sections = [("unknowns", unknowns), ("formulas", formulas), ("equations", equations), ("contacts", pressed)];
-    // Most studies have no contacts, and their section is left out.
+    // Greatest number of studies have no contacts, and their section is left out.
     for (section, lines) in sections.into_iter().filter(|(section, lines)| *section != "contacts" || !lines.is_empty())
     {
         if let Some(entries) = expanded.tree.section(section).filter(|_| !lines.is_empty()) {
