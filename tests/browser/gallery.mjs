@@ -14,6 +14,8 @@ const PICTURES = [
   ["yield", ["analyze", "examples/shaft-and-bore/study.toml"], ".kc figure"],
   ["verdict", ["analyze", "examples/first-study/study.toml"], "section.verdict"],
   ["contributions", ["analyze", "examples/stacked-blocks/study.toml"], "table.drivers"],
+  ["position", ["analyze", "examples/bolt-pattern/study.toml"], ".kc figure"],
+  ["play", ["analyze", "examples/pin-and-slot/study.toml"], ".kc figure"],
   ["chain", ["analyze", "examples/spacer-stack/study.toml"], "svg.chain.wide"],
   ["tails", ["analyze", "examples/two-suppliers/study.toml"], ".tails"],
   ["shift", ["analyze", "examples/first-study/study.toml"], "table.spans ~ table.spans"],

@@ -43,7 +43,7 @@ pub(super) struct Arguments {
     #[arg(short, long, global = true, help_heading = OUTPUT)]
     pub(super) quiet: bool,
 
-    /// Print every contribution and interaction, however small, and the stderr of an external model
+    /// Print all contributions and interactions, and the stderr of an external model
     #[arg(short, long, global = true, help_heading = OUTPUT)]
     pub(super) verbose: bool,
 
@@ -439,7 +439,7 @@ pub(super) struct ExpandArgs {
     /// The study, a .toml or .json file
     pub(super) study: PathBuf,
 
-    /// Use the nominal values and constants of this configuration of the study
+    /// Use this configuration of the study
     #[arg(long, value_name = "NAME")]
     pub(super) configuration: Option<String>,
 }

@@ -17,7 +17,7 @@ pub(crate) struct SampledArgs {
     #[arg(long = "characteristic", alias = "kc", value_name = "NAME")]
     pub(crate) characteristics: Vec<String>,
 
-    /// Use the nominal values and constants of this configuration of the study
+    /// Use this configuration of the study
     #[arg(long, value_name = "NAME")]
     pub(crate) configuration: Option<String>,
 
@@ -65,11 +65,11 @@ pub(crate) struct SimulateArgs {
     #[arg(long, conflicts_with = "rare")]
     pub(crate) sobol: bool,
 
-    /// Greatest number of evaluations of --sobol [default: 10000 of an external model]
+    /// Most evaluations of --sobol [default: 10000 of an external model]
     #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true, requires = "sobol")]
     pub(crate) budget: Option<u64>,
 
-    /// The probability beyond each limit by importance sampling, however small
+    /// Probability beyond each limit by importance sampling
     #[arg(long, conflicts_with_all = ["surrogate_control", "until_yield", "sampler"])]
     pub(crate) rare: bool,
 
@@ -81,7 +81,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "K", value_parser = whole, allow_negative_numbers = true, requires = "shard", conflicts_with_all = ["rare", "sobol", "surrogate_control", "until", "until_yield", "check", "html", "pdf", "csv"])]
     pub(crate) shards: Option<u64>,
 
-    /// Number of this process, from 1 to --shards; its sums are written as JSON
+    /// Number of this process, from 1 to --shards; the output is a JSON file
     #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true, requires = "shards")]
     pub(crate) shard: Option<u64>,
 

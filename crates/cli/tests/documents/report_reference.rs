@@ -50,8 +50,8 @@ fn name(value: &Value) -> Option<&str> {
 struct Page<'s> {
     defs: &'s Value,
     text: String,
-    /// Objects that have been shown, with their headings.
-    done: Vec<(Vec<&'s Value>, String)>,
+    /// Objects that have been shown, with their headings, and the key whose line has their keys.
+    done: Vec<(Vec<&'s Value>, String, Option<&'s str>)>,
     /// Lines of keys that have been shown, with their headings.
     lines: BTreeMap<String, String>,
 }
@@ -86,7 +86,7 @@ impl<'s> Page<'s> {
 
     /// Writes a table of the keys of these objects, then the tables of keys that are objects themselves.
     fn section(&mut self, objects: &[&'s Value], path: &str) {
-        let mut keys: BTreeMap<&str, Vec<&'s Value>> = BTreeMap::new();
+        let mut keys: BTreeMap<&'s str, Vec<&'s Value>> = BTreeMap::new();
         for object in objects {
             for (key, value) in object["properties"].as_object().unwrap() {
                 keys.entry(key).or_default().push(value);
@@ -98,15 +98,16 @@ impl<'s> Page<'s> {
             let mut kind = self.kind(&values);
             let objects: Vec<&'s Value> = values.iter().copied().flat_map(|value| self.objects(value)).collect();
             let mut within = String::new();
-            if let Some((_, place)) = self.done.iter().find(|(known, _)| *known == objects) {
+            if let Some((_, place, of)) = self.done.iter().find(|(known, ..)| *known == objects) {
                 kind = linked(&kind, place);
+                within = of.map_or(String::new(), |of| format!(" (keys as of `{of}`)"));
             } else if !objects.is_empty() && path.contains(": ") {
                 within = format!(": {}", self.names(&objects));
-                self.done.push((objects, path.to_owned()));
+                self.done.push((objects, path.to_owned(), Some(key)));
             } else if !objects.is_empty() {
                 let heading = format!("{path}: {key}");
                 kind = linked(&kind, &heading);
-                self.done.push((objects.clone(), heading.clone()));
+                self.done.push((objects.clone(), heading.clone(), None));
                 below.push((heading, objects));
             }
             let line = format!("- `{key}`: {kind}. {}", self.about(values[0])).trim_end_matches(" .").to_owned();
@@ -129,7 +130,7 @@ impl<'s> Page<'s> {
         let name = |(key, values): (&&str, &Vec<&'s Value>)| {
             let null = if self.kind(values).ends_with('?') { "?" } else { "" };
             let within: Vec<&'s Value> = values.iter().copied().flat_map(|value| self.objects(value)).collect();
-            let known = within.is_empty() || self.done.iter().any(|(known, _)| *known == within);
+            let known = within.is_empty() || self.done.iter().any(|(known, ..)| *known == within);
             if known { format!("`{key}{null}`") } else { format!("`{key}{null}` ({})", self.names(&within)) }
         };
         keys.iter().map(name).collect::<Vec<_>>().join(", ")
