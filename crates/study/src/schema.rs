@@ -153,11 +153,11 @@ impl JsonSchema for UnknownEntry {
         let number = |what: &str| json!({ "description": what, "type": "number" });
         json_schema!({
             "anyOf": [
-                { "description": "Where the search for it begins.", "type": "number" },
+                { "description": "Start value of the search.", "type": "number" },
                 {
                     "type": "object",
                     "properties": {
-                        "start": number("Where the search for it begins."),
+                        "start": number("Start value of the search."),
                         "lower": number("It does not lie below."),
                         "upper": number("It does not lie above."),
                         "unit": { "description": "The unit of these numbers.", "type": "string" },
