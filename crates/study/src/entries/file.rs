@@ -153,6 +153,10 @@ pub(crate) struct DimensionEntry {
     #[serde(default, rename = "from")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "registry::names"))]
     pub(crate) _from: Option<IgnoredAny>,
+    /// The shorter leg of an angle, by which `[general]` gives its tolerance: a length in mm, or the name of a dimension.
+    #[serde(default, rename = "leg")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "registry::leg"))]
+    pub(crate) _leg: Option<IgnoredAny>,
     /// Diameter of the circular zone of a position, in place of a tolerance: two dimensions, NAME_x and NAME_y. A table if the size of a
     /// feature widens the zone: { zone = 0.2, hole = "D", at = "MMC" }.
     #[serde(default)]

@@ -75,6 +75,11 @@ pub(crate) fn names(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" }, "minItems": 1 }] })
 }
 
+/// Schema of the shorter leg of an angle: a length in mm, or the name of a dimension.
+pub(crate) fn leg(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "anyOf": [{ "type": "number", "exclusiveMinimum": 0 }, { "type": "string" }] })
+}
+
 /// Schema of a zone or a length.
 pub(crate) fn zone(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "number", "minimum": 0 })

@@ -5,6 +5,17 @@
 
 use sensitol_study::Study;
 
+/// Shorter leg in each range in mm, and half tolerances of classes f, m, c and v in degrees and minutes.
+///
+/// Oracle: ISO 2768-1:1989, table 3, as tables of others print it: in degrees and minutes, f and m in one column.
+const ANGLES: [([f64; 2], [(f64, f64); 4]); 5] = [
+    ([0.5, 10.0], [(1.0, 0.0), (1.0, 0.0), (1.0, 30.0), (3.0, 0.0)]),
+    ([10.01, 50.0], [(0.0, 30.0), (0.0, 30.0), (1.0, 0.0), (2.0, 0.0)]),
+    ([50.01, 120.0], [(0.0, 20.0), (0.0, 20.0), (0.0, 30.0), (1.0, 0.0)]),
+    ([120.01, 400.0], [(0.0, 10.0), (0.0, 10.0), (0.0, 15.0), (0.0, 30.0)]),
+    ([400.01, 5000.0], [(0.0, 5.0), (0.0, 5.0), (0.0, 10.0), (0.0, 20.0)]),
+];
+
 /// Size in each range, and half tolerances of classes f, m, c and v in mm. None if the standard has none.
 const TABLE: [(f64, [Option<f64>; 4]); 8] = [
     (3.0, [Some(0.05), Some(0.1), Some(0.2), None]),
@@ -58,6 +69,51 @@ fn every_range_and_class_has_the_value_of_the_standard() {
 }
 
 #[test]
+fn every_angle_has_the_value_of_the_standard_for_its_shorter_leg() {
+    for (legs, values) in ANGLES {
+        for (class, (degrees, minutes)) in ["f", "m", "c", "v"].into_iter().zip(values) {
+            for leg in legs {
+                let dimension = format!("nominal = 30, unit = \"deg\", leg = {leg:?}");
+                let found = half(&format!("standard = \"ISO 2768-{class}\""), &dimension).unwrap();
+                // Rounding of 30 +- tolerance.
+                assert!((found - (degrees + minutes / 60.0)).abs() < 1e-13, "{leg} {class}: {found}");
+            }
+        }
+    }
+    let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    // The leg is the dimension `t` of 1 mm; in radians; an own tolerance and the angle of a title block win.
+    let named = "nominal = 0.5, unit = \"rad\", leg = \"t\"";
+    near(half("standard = \"ISO 2768-v\"", named).unwrap(), 3f64.to_radians());
+    near(half("standard = \"ISO 2768-v\"\nangle = 0.25", named).unwrap(), 0.25f64.to_radians());
+    near(half("standard = \"ISO 2768-v\"", "nominal = 3, tolerance = 0.5, unit = \"deg\", leg = 20").unwrap(), 0.5);
+}
+
+#[test]
+fn a_leg_stays_without_effect_until_there_is_a_general_tolerance() {
+    let text = |leg: &str| {
+        format!(
+            "[dimensions]\na = {{ nominal = 30, unit = \"deg\", leg = {leg} }}\nt = {{ nominal = 40, tolerance = 0.1, unit = \"mm\" }}\n\
+             [characteristics]\ny = {{ formula = \"t\" }}\n"
+        )
+    };
+    let study = Study::from_toml(&text("\"t\""), "leg.toml").unwrap();
+    assert_eq!(study.problem.dimensions()[0].tolerance(), None);
+    assert!(!study.expanded.contains("leg"), "{}", study.expanded);
+    for (leg, expected) in [
+        ("0", "above 0"),
+        ("\"tt\"", "no dimension `tt`"),
+        ("\"a\"", "the name of a dimension"),
+        ("[1]", "the name of a dimension"),
+    ] {
+        let error = Study::from_toml(&text(leg), "leg.toml").unwrap_err().to_string();
+        assert!(error.contains("dimensions.a.leg") && error.contains(expected), "{leg}: {error}");
+    }
+    let length = text("40").replace("\"deg\"", "\"mm\"");
+    let error = Study::from_toml(&length, "leg.toml").unwrap_err().to_string();
+    assert!(error.contains("unit = \"deg\""), "{error}");
+}
+
+#[test]
 fn values_of_a_title_block_and_units_are_taken() {
     // 0.2 mm are 0.2/25.4 in; half a degree in both units of angles.
     let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-14, "{found} {expected}");
@@ -65,7 +121,7 @@ fn values_of_a_title_block_and_units_are_taken() {
     near(half("standard = \"ISO 2768-mK\"", "nominal = 2, unit = \"in\"").unwrap(), 0.3 / 25.4);
     near(half("angle = 0.5", "nominal = 30, unit = \"deg\"").unwrap(), 0.5);
     near(half("angle = 0.5", "nominal = 0.5, unit = \"rad\"").unwrap(), 0.5f64.to_radians());
-    // Own tolerances win; an angle has none by a standard, a mass by nothing.
+    // Own tolerances win; an angle has none by a standard without its shorter leg, a mass by nothing.
     near(half("length = 0.2", "nominal = 2, tolerance = 0.01, unit = \"mm\"").unwrap(), 0.01);
     for constant in ["nominal = 30, unit = \"deg\"", "nominal = 3, unit = \"kg\"", "nominal = 3"] {
         near(half("standard = \"ISO 2768-m\"", constant).unwrap(), 0.0);
