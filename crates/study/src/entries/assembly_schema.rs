@@ -91,7 +91,12 @@ fn zones() -> Vec<(&'static str, Value)> {
             json!({ "description": "Datum targets of a plane, one to three places along its x and y: a joint touches there.", "type": "array",
                 "items": { "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 }, "minItems": 1, "maxItems": 3 }),
         ),
-        ("datums", name("Features of this part from which the zones are measured, in their order: \"A B C\".")),
+        (
+            "datums",
+            name(
+                "Features of this part from which the zones are measured, in their order: \"A B C\". \"A-B\" are two that make one datum.",
+            ),
+        ),
         ("length", quantity("The length over which the zones hold: of an axis, or across the tilt of a face.")),
         ("size", size),
         (

@@ -28,6 +28,14 @@ pub enum ZoneFault {
         /// Datums before it.
         before: Vec<String>,
     },
+    /// Two features that make no common datum.
+    #[error("`{}` and `{}` make no common datum: {why}", names[0], names[1])]
+    NoCommonDatum {
+        /// The two features.
+        names: [String; 2],
+        /// Reason.
+        why: CommonDatumFault,
+    },
     /// A datum of the wrong kind.
     #[error("`{zone}` is measured from an axis, and datum `{datum}` is a {kind}")]
     NoAxis {
@@ -154,6 +162,26 @@ pub enum ZoneFault {
     },
 }
 
+/// Reason why two features make no common datum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum CommonDatumFault {
+    /// Features of other kinds than two axes or two planes.
+    #[error("they are not two axes or two planes")]
+    Kinds,
+    /// Directions that differ.
+    #[error("their directions are not parallel")]
+    Directions,
+    /// Axes beside each other.
+    #[error("their axes are not one line")]
+    Line,
+    /// Middles at one place, or over each other.
+    #[error("their middles are not apart")]
+    Middles,
+    /// Places that are formulas across the direction.
+    #[error("their places across their direction are different formulas")]
+    Formula,
+}
+
 /// Part of a cost that allows a tolerance.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RefinedChoice {
@@ -208,6 +236,7 @@ impl ZoneFault {
             Self::DatumOfItself { .. } => "name other features of the part in datums, or leave datums out".into(),
             Self::DatumCycle { .. } => "measure one of them from a third feature, or leave its datums out".into(),
             Self::IdleDatum { .. } => "leave it out, or name a feature in another direction".into(),
+            Self::NoCommonDatum { names: [a, b], .. } => format!("write them as two datums: \"{a} {b}\""),
             Self::NoAxis { .. } => "name an axis first, such as datums = \"journal\"".into(),
             Self::AxisMissing { .. } => "name the axis of the part: datums = \"journal\"".into(),
             Self::VaryingDirection { .. } => "write its directions as words or numbers".into(),

@@ -195,3 +195,122 @@ fn names_of_targets_are_free_and_faces_with_targets_are_used() {
     let error = parse(&text.replacen("normal = \"-z\"", "normal = \"-z\", target = [1, 2]", 1)).expect_err("key");
     assert!(error.help().is_some_and(|text| text.contains("targets")), "{error:?}");
 }
+
+/// Text of a shaft in two bearings. The ring is 40 mm beyond the second one, and its runout is about both.
+fn shaft(datums: &str, bearings: [&str; 2]) -> String {
+    let [a, b] = bearings;
+    format!(
+        r#"
+[dimensions]
+t = {{ nominal = 30, unit = "mm" }}
+[parts.shaft]
+zero = {{ frame = [0, 0, 0], z = "z", x = "x" }}
+A = {{ axis = [0, 0, 10], along = "z", x = "x"{a} }}
+B = {{ axis = [0, 0, 90], along = "-z", x = "x"{b} }}
+face = {{ plane = [0, 0, 130], normal = "z" }}
+ring = {{ axis = [0, 0, 130], along = "z", x = "x", datums = "{datums}", runout = 0.03 }}
+[parts.pointer]
+at = [0, 0, 130]
+sleeve = {{ axis = [0, 0, 0], along = "z" }}
+tip = {{ point = [0, 0, 0] }}
+far = {{ point = [0, 0, 100] }}
+key = {{ plane = [0, 0, 0], normal = "-z" }}
+[joints]
+fit = {{ hole = "shaft.ring", pin = "pointer.sleeve", takes = 4 }}
+stop = {{ on = "shaft.face", against = "pointer.key", takes = 1 }}
+[characteristics]
+tip = {{ of = "pointer.tip", from = "shaft.zero", along = "x", unit = "mm" }}
+far = {{ of = "pointer.far", from = "shaft.zero", along = "x", unit = "mm" }}
+"#
+    )
+}
+
+/// The line through the middles of two bearings at 10 and 90 passes a ring at 130 with the weights -0.5 and 1.5, and a point at 230 with
+/// -1.75 and 2.75: the lever rule. Zones are independent, with three sigma at half their width.
+#[test]
+fn a_common_datum_is_the_line_through_two_middles() {
+    let ([alone, _], _) = sigmas(&shaft("A-B", ["", ""]));
+    let zones = [", position = 0.06", ", position = 0.12"];
+    let ([tip, far], study) = sigmas(&shaft("A-B", zones));
+    let [a, b] = [0.06 / 6.0, 0.12 / 6.0];
+    let expected = |weights: [f64; 2]| (alone.powi(2) + (weights[0] * a).powi(2) + (weights[1] * b).powi(2)).sqrt();
+    // Tilts of 1e-3 turn places by their square.
+    relative(tip, expected([-0.5, 1.5]), 1e-5);
+    relative(far, expected([-1.75, 2.75]), 1e-5);
+    let ([again, _], _) = sigmas(&study.expanded);
+    assert_eq!(again, tip);
+    // The order of the two has no meaning.
+    let ([turned, _], _) = sigmas(&shaft("B-A", zones));
+    relative(turned, tip, 1e-9);
+    // A place that is a dimension has the same lever.
+    let formula = shaft("A-B", zones).replace("[0, 0, 90]", "[0, 0, \"3*t\"]");
+    let ([formula, _], _) = sigmas(&formula);
+    relative(formula, tip, 1e-9);
+    // A single datum has other figures: its place alone moves the ring.
+    let ([single, _], _) = sigmas(&shaft("A", zones));
+    relative(single, expected([1.0, 0.0]), 1e-5);
+}
+
+/// Two pads in one plane, 80 mm apart along x: the block on both follows the lever rule along x, and the mean of their tilts along y.
+#[test]
+fn a_common_datum_of_planes_leans_by_their_heights() {
+    let text = |a: &str, b: &str| {
+        format!(
+            r#"
+[dimensions]
+t = {{ nominal = 30, unit = "mm" }}
+[parts.base]
+zero = {{ plane = [0, 0, 0], normal = "z" }}
+A = {{ plane = [10, 0, 20], normal = "z", x = "x"{a} }}
+B = {{ plane = [90, 0, 20], normal = "z", x = "y"{b} }}
+top = {{ plane = [130, 50, 60], normal = "z", x = "x", datums = "A-B", position = 0 }}
+[parts.lid]
+at = [130, 50, 60]
+foot = {{ plane = [0, 0, 0], normal = "-z" }}
+mark = {{ point = [0, 0, 0] }}
+edge = {{ point = [0, 20, 0] }}
+[joints]
+seat = {{ on = "base.top", against = "lid.foot", takes = 3 }}
+[characteristics]
+mark = {{ of = "lid.mark", from = "base.zero", unit = "mm" }}
+edge = {{ of = "lid.edge", from = "base.zero", unit = "mm" }}
+"#
+        )
+    };
+    let ([mark, _], _) = sigmas(&text(", position = 0.06", ", position = 0.12"));
+    // No tilt of their own: -0.5 and 1.5 at x = 130.
+    relative(mark, f64::hypot(-0.5 * 0.01, 1.5 * 0.02), 1e-5);
+    // A tilt about x of 0.04 over 20 mm, of the first pad alone: half of it at 50 and at 70 mm along y.
+    let ([mark, edge], study) = sigmas(&text(", parallelism = 0.04, size = [20, 20], datums = \"zero\"", ""));
+    let tilt = study.problem.dimensions().iter().find(|one| one.name().starts_with("base.A.tilt")).unwrap().sigma();
+    // These figures are of a sample of the model, with a standard error of 2.3e-5 of sigma.
+    relative(mark, 0.5 * tilt * 50.0, 1e-4);
+    relative(edge, 0.5 * tilt * 70.0, 1e-4);
+}
+
+#[test]
+fn wrong_common_datums_name_the_remedy() {
+    let study = shaft("A-B", ["", ""]);
+    for (from, to, what, remedy) in [
+        ("datums = \"A-B\"", "datums = \"A-C\"", "no feature of this part `C`", ""),
+        ("datums = \"A-B\"", "datums = \"A-face\"", "they are not two axes or two planes", "\"A face\""),
+        ("datums = \"A-B\"", "datums = \"A-ring\"", "`ring` is its own datum", "name other features"),
+        (
+            "datums = \"A-B\"",
+            "datums = \"face A-B face\"",
+            "datum `face` fixes nothing that `face` and `A-B` have",
+            "leave it out",
+        ),
+        ("[0, 0, 90]", "[5, 0, 90]", "their axes are not one line", "\"A B\""),
+        ("[0, 0, 90]", "[0, 0, 10]", "their middles are not apart", "\"A B\""),
+        ("[0, 0, 90]", "[\"t\", 0, 90]", "different formulas", "\"A B\""),
+        ("along = \"-z\"", "along = \"y\"", "their directions are not parallel", "\"A B\""),
+    ] {
+        let changed = study.replacen(from, to, 1);
+        assert_ne!(changed, study, "{from}");
+        let error: StudyError = parse(&changed).expect_err(to);
+        assert_eq!(error.key, "parts.shaft.ring.datums", "{to}: {error}");
+        let said = error.to_string();
+        assert!(said.contains(what) && said.contains(remedy), "{to}: {said}");
+    }
+}

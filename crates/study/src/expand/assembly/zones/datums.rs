@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use super::common;
 use super::deviation::Torsor;
 use super::entry::{ZoneKind, ZonedFeature};
 use super::frame::{ConstantFrame, cross, dot, number, unit};
@@ -246,7 +247,7 @@ pub(super) struct PartTorsor {
     pub(super) tilt: [Terms; 3],
 }
 
-/// Indices of the datums of a feature, and of those of its orientation if it has its own.
+/// Indices of the datums of a feature, or of the two features of a common datum, and of those of its orientation if it has its own.
 #[derive(Debug, Default)]
 pub(super) struct DatumIndices {
     pub(super) own: Vec<usize>,
@@ -291,6 +292,13 @@ fn carry(
             return Err(at(&of.owner, "datums", &of.datum_span, found.into()));
         }
         carry(datum, features, datums, own, (done, open), lines)?;
+    }
+    if let (Some(_), [first, second]) = (of.common, &named.own[..]) {
+        let [first, second] = [*first, *second];
+        own[feature] = common::deviation([features[first], features[second]], [&own[first], &own[second]], lines);
+        open[feature] = false;
+        done[feature] = true;
+        return Ok(());
     }
     let mut taken = taken_over(of, &named.own, features, own, lines)?;
     if let Some(orientation) = &named.orientation {

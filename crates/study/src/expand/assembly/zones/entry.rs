@@ -100,6 +100,8 @@ pub(super) struct ZonedFeature<'t> {
     pub(super) datum_span: Range<usize>,
     /// Datums of the orientation with their place; None if they are those of the feature.
     pub(super) orientation_datums: Option<(Vec<&'t str>, Range<usize>)>,
+    /// Names of the two features of a common datum; None for a feature of the study.
+    pub(super) common: Option<[&'t str; 2]>,
     pub(super) extent: FeatureExtent,
     /// Constant directions; None if one varies.
     pub(super) frame: Option<ConstantFrame>,
@@ -172,6 +174,7 @@ fn feature<'t>(
         datums,
         datum_span,
         orientation_datums,
+        common: None,
         extent: extent(study, tree, kind, &path)?,
         frame: ConstantFrame::of(tree, direction),
     })

@@ -2,6 +2,7 @@
 //!
 //! A zone becomes a displacement (`shift`) and a rotation (`tilt`) of the frame of its feature, a float becomes the `offset` of a joint.
 
+mod common;
 mod cost;
 mod datums;
 mod deviation;
@@ -50,12 +51,15 @@ pub(in crate::expand) fn expand(expanded: &mut Expanded) -> Result<Option<LineOw
     let materials = float::materials(&study, &features);
     for (key, tree) in parts.entries() {
         let of_part: Vec<&ZonedFeature<'_>> = features.iter().filter(|feature| feature.part == key.name).collect();
-        let Some(found) = faults.take(part(&study, (key, tree), &of_part, &materials, &mut lines)) else { continue };
+        let Some(commons) = faults.take(common::common_datums(&of_part)) else { continue };
+        let with_commons: Vec<&ZonedFeature<'_>> = of_part.iter().copied().chain(&commons).collect();
+        let deviations = part(&study, (key, tree), &with_commons, &materials, &mut lines);
+        let Some(found) = faults.take(deviations) else { continue };
         let entry = expanded.tree.get_mut("parts").and_then(|parts| parts.get_mut(&key.name));
         if let Some(entries) = entry.and_then(Tree::entries_mut) {
             entries.retain(|(key, _)| key.name != "patterns");
         }
-        expanded.open_zones.extend(of_part.iter().flat_map(|feature| datums::open_zones(feature, &of_part)));
+        expanded.open_zones.extend(of_part.iter().flat_map(|feature| datums::open_zones(feature, &with_commons)));
         for (feature, torsor) in of_part.iter().zip(found) {
             write(expanded, feature, &torsor, &lines);
         }
@@ -67,7 +71,7 @@ pub(in crate::expand) fn expand(expanded: &mut Expanded) -> Result<Option<LineOw
     Ok(Some(lines.write(expanded)))
 }
 
-/// Deviations of the features of a part, in their order.
+/// Deviations of the features of a part, in their order. Common datums stand after the features of the study.
 fn part(
     study: &Tree,
     (key, tree): (&Key, &Tree),
@@ -77,6 +81,12 @@ fn part(
 ) -> Result<Vec<Torsor>, Fault> {
     let (mut own, mut indices) = (Vec::new(), Vec::new());
     for feature in features {
+        let index = |datum: &str| features.iter().position(|other| other.name == datum);
+        if let Some(pair) = feature.common {
+            own.push(Torsor::default());
+            indices.push(DatumIndices { own: pair.into_iter().filter_map(index).collect(), orientation: None });
+            continue;
+        }
         let datums = datums::named(feature, &DatumList::of(feature), features)?;
         let orientation = DatumList::of_orientation(feature);
         let orientation = orientation.map(|names| datums::named(feature, &names, features)).transpose()?;
@@ -90,11 +100,11 @@ fn part(
                 .map(|(_, kind, diameter)| (*kind, diameter.clone())),
         };
         own.push(torsor::torsor(feature, &facts, lines)?);
-        let index = |datum: &&ZonedFeature<'_>| features.iter().position(|other| other.name == datum.name);
-        let places = |datums: &[&ZonedFeature<'_>]| datums.iter().filter_map(index).collect();
+        let places = |datums: &[&ZonedFeature<'_>]| datums.iter().filter_map(|datum| index(datum.name)).collect();
         indices.push(DatumIndices { own: places(&datums), orientation: orientation.as_deref().map(places) });
     }
-    pattern::patterns(study, key, tree, features, &mut own, lines)?;
+    let written = features.iter().take_while(|feature| feature.common.is_none()).count();
+    pattern::patterns(study, key, tree, &features[..written], &mut own, lines)?;
     datums::carried(features, &indices, own, lines)
 }
 
