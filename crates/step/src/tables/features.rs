@@ -62,7 +62,8 @@ pub(super) struct Features {
     by_letter: BTreeMap<String, Vec<usize>>,
     names: UniqueNames,
     counts: HashMap<&'static str, usize>,
-    tolerance: f64,
+    /// Greatest distance of two surfaces that are one, in the unit of the part.
+    pub(super) tolerance: f64,
 }
 
 /// Groups of faces that something names together.
@@ -240,15 +241,15 @@ impl Features {
         roots.iter().filter_map(|root| self.by_root.get(root).copied()).collect()
     }
 
-    /// Feature of a datum.
+    /// Features of a datum: one, or two that are one datum.
     ///
     /// # Errors
-    /// Returns why it has no single one.
-    pub(super) fn datum_feature(&self, letter: &str) -> Result<usize, String> {
-        match self.by_letter.get(letter).map(Vec::as_slice) {
-            Some([only]) => Ok(*only),
-            None | Some([]) => Err(format!("datum {letter} has no feature")),
-            Some(_) => Err(format!("datum {letter} has several features")),
+    /// Returns why there is none.
+    pub(super) fn datum_features(&self, letter: &str) -> Result<Vec<usize>, String> {
+        match self.by_letter.get(letter).map_or(&[][..], Vec::as_slice) {
+            [] => Err(format!("datum {letter} has no feature")),
+            found if found.len() <= 2 => Ok(found.to_vec()),
+            _ => Err(format!("datum {letter} has several features")),
         }
     }
 }

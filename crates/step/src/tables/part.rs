@@ -5,7 +5,7 @@ use super::datum_frame::datum_names;
 use super::features::Features;
 use super::sizes::{StudyUnit, line, suffix};
 use super::text::{UniqueNames, comment, number, point};
-use super::zone_keys::{KeyText, group};
+use super::zone_keys::{KeyText, rank};
 use super::{OpenItem, OpenReason, StudyTables, TableRequest};
 use crate::semantic::{
     DimensionKind, GeometricTolerance, Placement, StepDimension, StepPart, ToleranceKind, ZoneShape,
@@ -97,7 +97,7 @@ impl<'m> PartWriter<'m> {
         let mut open = Vec::new();
         // Places first, so that a direction that refines one finds it.
         let mut ordered: Vec<&GeometricTolerance> = part.tolerances.iter().collect();
-        ordered.sort_by_key(|tolerance| group(tolerance.kind));
+        ordered.sort_by_key(|tolerance| rank(tolerance));
         for tolerance in ordered {
             match self.tolerance(tolerance, unit) {
                 Ok(()) if !self.is_first => {}
@@ -166,29 +166,35 @@ impl<'m> PartWriter<'m> {
         index: usize,
         tolerance: &GeometricTolerance,
         value: f64,
-        datums: Option<&[usize]>,
+        datums: Option<&[Vec<usize>]>,
     ) -> Result<(), String> {
         let (names, idle) = match datums {
             Some(datums) => {
-                let (names, idle) = datum_names(&self.features.all, index, datums)?;
+                let (names, idle) = datum_names(&self.features.all, index, datums, self.features.tolerance)?;
                 (Some(names), idle)
             }
             None => (None, Vec::new()),
         };
+        let datum = names.as_ref().and_then(|names| names.features.first());
+        let datum = datum.map(|&datum| self.features.all[datum].shape.clone());
         let feature = &mut self.features.all[index];
         let shape = feature.shape.scaled(self.scale);
         // A formula of a radius is no size that gives a bonus.
         let size = feature.diameter.clone().filter(|name| !name.contains('*'));
         let size = size.map(|name| (if feature.convex { "pin" } else { "hole" }, name));
-        feature.zones.add(tolerance, value, names, &shape, size)?;
+        feature.zones.add(tolerance, value, names, (&shape, datum.as_ref()), size)?;
         feature.notes.extend(notes(tolerance));
+        if let Some(upper) = tolerance.upper {
+            let entity = tolerance.entity;
+            feature.notes.push(format!("#{entity}: lower segment of #{upper}, each face alone"));
+        }
         let fixes_nothing = |name: String| format!("#{}: datum {name} fixes nothing more", tolerance.entity);
         feature.notes.extend(idle.into_iter().map(fixes_nothing));
         Ok(())
     }
 
-    /// Features of the datums of a tolerance. Returns why there is none.
-    fn datums(&self, tolerance: &GeometricTolerance) -> Result<Option<Vec<usize>>, String> {
+    /// Features of the datums of a tolerance, those of a common datum together. Returns why there is none.
+    fn datums(&self, tolerance: &GeometricTolerance) -> Result<Option<Vec<Vec<usize>>>, String> {
         if !tolerance.has_datums {
             return Ok(None);
         }
@@ -197,10 +203,11 @@ impl<'m> PartWriter<'m> {
         }
         let mut found = Vec::new();
         for reference in &tolerance.datums {
-            let [letter] = &reference.letters[..] else {
-                return Err(format!("{} is a common datum", comment(&reference.letters.join("-"))));
-            };
-            found.push(self.features.datum_feature(letter).map_err(|reason| comment(&reason))?);
+            let mut features = Vec::new();
+            for letter in &reference.letters {
+                features.extend(self.features.datum_features(letter).map_err(|reason| comment(&reason))?);
+            }
+            found.push(features);
         }
         Ok(Some(found))
     }

@@ -1,8 +1,8 @@
 //! Keys of tolerances, and which of them the reader of studies takes.
 
-use super::cluster::FeatureShape;
+use super::cluster::{FeatureShape, SAME_DIRECTION};
 use super::text::number;
-use crate::semantic::{GeometricTolerance, MaterialCondition, ToleranceKind, ZoneShape};
+use crate::semantic::{GeometricTolerance, MaterialCondition, ToleranceKind, ZoneShape, cross, dot};
 
 /// Keys of features that the reader of studies takes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -60,9 +60,63 @@ fn key(kind: ToleranceKind) -> Option<(&'static str, ZoneGroup)> {
     })
 }
 
-/// Group of a kind of tolerance. Kinds without a key are last.
-pub(super) fn group(kind: ToleranceKind) -> Option<ZoneGroup> {
-    key(kind).map(|(_, group)| group)
+/// Rank of a tolerance among those of a feature: places before the directions that refine them. Kinds without a key are first.
+pub(super) fn rank(tolerance: &GeometricTolerance) -> Option<ZoneGroup> {
+    let (_, group) = key(tolerance.kind)?;
+    Some(if tolerance.upper.is_some() { group.max(ZoneGroup::Orientation) } else { group })
+}
+
+/// Key and group of a tolerance of a feature. The lower segment of a composite frame bounds the direction of a feature, or its form if it
+/// names no datum. `datum` is the shape of the first datum.
+///
+/// # Errors
+/// Returns why a study has no key.
+fn key_of(
+    tolerance: &GeometricTolerance,
+    shape: &FeatureShape,
+    datum: Option<&FeatureShape>,
+) -> Result<(&'static str, ZoneGroup), String> {
+    let Some((own, group)) = key(tolerance.kind) else {
+        return Err(format!("a study has no key for {}", tolerance.kind.label()));
+    };
+    if !fits(own, shape) {
+        return Err(format!("a study has no {} of {}", tolerance.kind.label(), words(shape)));
+    }
+    if tolerance.upper.is_none() || group != ZoneGroup::Place {
+        return Ok((own, group));
+    }
+    if tolerance.condition.is_some() {
+        return Err("a direction at a material condition".to_owned());
+    }
+    match (own, datum) {
+        ("profile", None) => Ok(("flatness", ZoneGroup::Form)),
+        ("profile" | "position", Some(datum)) => match orientation(shape, datum) {
+            Some(key) => Ok((key, ZoneGroup::Orientation)),
+            None => Err("a point has no direction".to_owned()),
+        },
+        _ => Err("the places of features to each other".to_owned()),
+    }
+}
+
+/// Key of the orientation of a feature to a datum. Returns None if one of them is a point.
+fn orientation(shape: &FeatureShape, datum: &FeatureShape) -> Option<&'static str> {
+    let direction = |shape: &FeatureShape| match shape {
+        FeatureShape::Plane { normal, .. } => Some((*normal, true)),
+        FeatureShape::Axis { along, .. } => Some((*along, false)),
+        FeatureShape::Point { .. } => None,
+    };
+    let ((own, is_plane), (other, is_plane_too)) = (direction(shape)?, direction(datum)?);
+    let (along, turned) = (dot(own, other), cross(own, other));
+    // The normal of a plane stands across the plane.
+    let (parallel, perpendicular) = match is_plane == is_plane_too {
+        true => ("parallelism", "perpendicularity"),
+        false => ("perpendicularity", "parallelism"),
+    };
+    Some(match (dot(turned, turned).sqrt() < SAME_DIRECTION, along.abs() < SAME_DIRECTION) {
+        (true, _) => parallel,
+        (_, true) => perpendicular,
+        _ => "angularity",
+    })
 }
 
 /// True if a shape can have a key.
@@ -104,6 +158,8 @@ struct ZoneKey {
     value: f64,
     /// Key and name of the size that gives a bonus.
     bonus: Option<(MaterialCondition, &'static str, String)>,
+    /// Datums of an orientation that are not those of the feature.
+    datums: Option<DatumNames>,
 }
 
 /// Tolerances that a feature has as keys: at most one of each group, and all of one datum frame.
@@ -117,11 +173,12 @@ pub(super) struct FeatureZones {
 
 impl FeatureZones {
     /// Features from which this one is measured.
-    pub(super) fn datum_features(&self) -> &[usize] {
-        self.datums.as_ref().map_or(&[], |datums| &datums.features)
+    pub(super) fn datum_features(&self) -> impl Iterator<Item = usize> {
+        let own = self.zones.iter().filter_map(|zone| zone.datums.as_ref());
+        own.chain(&self.datums).flat_map(|datums| datums.features.iter().copied())
     }
 
-    /// Adds a tolerance. `value` and `shape` are in the unit of the study, `size` is the key and the name of the dimension of the diameter.
+    /// Adds a tolerance. `value` and the shape of the feature are in the unit of the study, and the second shape is that of the first datum. `size` is the key and the name of the dimension of the diameter.
     ///
     /// # Errors
     /// Returns why the feature cannot have it as a key.
@@ -130,15 +187,10 @@ impl FeatureZones {
         tolerance: &GeometricTolerance,
         value: f64,
         datums: Option<DatumNames>,
-        shape: &FeatureShape,
+        (shape, datum): (&FeatureShape, Option<&FeatureShape>),
         size: Option<(&'static str, String)>,
     ) -> Result<(), String> {
-        let Some((key, group)) = key(tolerance.kind) else {
-            return Err(format!("a study has no key for {}", tolerance.kind.label()));
-        };
-        if !fits(key, shape) {
-            return Err(format!("a study has no {} of {}", tolerance.kind.label(), words(shape)));
-        }
+        let (key, group) = key_of(tolerance, shape, datum)?;
         // The runout of a face tilts it by its diameter, which the extents of a face do not tell.
         if matches!(key, "runout" | "total_runout") && matches!(shape, FeatureShape::Plane { .. }) {
             return Err("the runout of a face needs its diameter".to_owned());
@@ -169,13 +221,22 @@ impl FeatureZones {
         };
         self.check_extent(group, value, shape)?;
         self.check_datums(key, group, datums.as_ref(), shape)?;
-        // A form has no datums, and joins every frame.
-        if group != ZoneGroup::Form {
-            self.datums = datums;
-        }
-        self.zones.push(ZoneKey { key, group, value, bonus });
+        // A form has no datums, and joins every frame. An orientation that refines a place may have datums of its own.
+        let own = match group {
+            ZoneGroup::Form => None,
+            ZoneGroup::Orientation if self.is_placed() => datums.filter(|datums| self.datums.as_ref() != Some(datums)),
+            ZoneGroup::Orientation | ZoneGroup::Place => {
+                self.datums = datums;
+                None
+            }
+        };
+        self.zones.push(ZoneKey { key, group, value, bonus, datums: own });
         self.entities.push(tolerance.entity);
         Ok(())
+    }
+
+    fn is_placed(&self) -> bool {
+        self.zones.iter().any(|zone| zone.group == ZoneGroup::Place)
     }
 
     /// Checks that a zone is not wider than its feature, and that a direction refines a place.
@@ -214,7 +275,8 @@ impl FeatureZones {
             return Ok(());
         }
         let is_framed = self.zones.iter().any(|zone| zone.group != ZoneGroup::Form);
-        if is_framed && self.datums.as_ref() != datums {
+        let has_own = group == ZoneGroup::Orientation && datums.is_some() && self.is_placed();
+        if is_framed && !has_own && self.datums.as_ref() != datums {
             return Err("another datum frame than the other tolerances of the feature".to_owned());
         }
         let about_axis = matches!(key, "coaxiality" | "concentricity" | "runout" | "total_runout");
@@ -228,7 +290,10 @@ impl FeatureZones {
     /// Keys with their values, datums last.
     pub(super) fn keys(&self) -> Vec<KeyText> {
         let text = |zone: &ZoneKey| match &zone.bonus {
-            None => number(zone.value),
+            None => match &zone.datums {
+                None => number(zone.value),
+                Some(datums) => format!("{{ zone = {}, datums = \"{}\" }}", number(zone.value), datums.text),
+            },
             Some((condition, key, size)) => {
                 let at = match condition {
                     MaterialCondition::Maximum => "MMC",
