@@ -5,10 +5,13 @@
 
 use sensitol_study::Study;
 
-/// Shorter leg in each range in mm, and half tolerances of classes f, m, c and v in degrees and minutes.
+/// Degrees and minutes.
+type Arc = (f64, f64);
+
+/// Shorter legs at both ends of each range in mm, and half tolerances of classes f, m, c and v in degrees and minutes.
 ///
 /// Oracle: ISO 2768-1:1989, table 3, as tables of others print it: in degrees and minutes, f and m in one column.
-const ANGLES: [([f64; 2], [(f64, f64); 4]); 5] = [
+const ANGLES: [([f64; 2], [Arc; 4]); 5] = [
     ([0.5, 10.0], [(1.0, 0.0), (1.0, 0.0), (1.0, 30.0), (3.0, 0.0)]),
     ([10.01, 50.0], [(0.0, 30.0), (0.0, 30.0), (1.0, 0.0), (2.0, 0.0)]),
     ([50.01, 120.0], [(0.0, 20.0), (0.0, 20.0), (0.0, 30.0), (1.0, 0.0)]),

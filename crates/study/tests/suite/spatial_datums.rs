@@ -244,8 +244,10 @@ fn a_common_datum_is_the_line_through_two_middles() {
     relative(turned, tip, 1e-9);
     // A place that is a dimension has the same lever.
     let formula = shaft("A-B", zones).replace("[0, 0, 90]", "[0, 0, \"3*t\"]");
-    let ([formula, _], _) = sigmas(&formula);
-    relative(formula, tip, 1e-9);
+    for units in ["", "units = \"convert\"\n"] {
+        let ([found, _], _) = sigmas(&format!("{units}{formula}"));
+        relative(found, tip, 1e-9);
+    }
     // A single datum has other figures: its place alone moves the ring.
     let ([single, _], _) = sigmas(&shaft("A", zones));
     relative(single, expected([1.0, 0.0]), 1e-5);

@@ -8,10 +8,9 @@
 
 use std::ops::Range;
 
-use super::datums::place;
 use super::deviation::Torsor;
 use super::entry::{FeatureExtent, ZonedFeature};
-use super::frame::dot;
+use super::frame::{dot, place};
 use super::lines::{Extent, Lines, at};
 use crate::error::{Fault, StudyFault};
 use crate::faults::zone_fault::{CommonDatumFault, ZoneFault};
@@ -106,8 +105,8 @@ fn common_datum<'t>(
 
 /// Distance of the middle of the second feature from that of the first.
 enum Separation {
-    /// Along the axis of the first feature.
-    Along(Extent),
+    /// Along the axis of the first feature: the difference of two coordinates.
+    Along([Extent; 2]),
     /// Across the normal of the first feature: a direction in the frame of the feature, and a length.
     Across([f64; 2], f64),
 }
@@ -146,21 +145,21 @@ fn separation(a: &ZonedFeature<'_>, b: &ZonedFeature<'_>) -> Result<Separation, 
     if aside > NOTHING.sqrt() * height.abs() && offset.iter().all(Option::is_some) {
         return Err(CommonDatumFault::Line);
     }
-    match (0..3).find(|&i| offset[i].is_none()) {
-        Some(i) => Ok(Separation::Along(Extent::Formula(difference(&to[i], &from[i], z[i] < 0.0)))),
-        None if height == 0.0 => Err(CommonDatumFault::Middles),
-        None => Ok(Separation::Along(Extent::Number(height))),
-    }
+    let [to, from] = match (0..3).find(|&i| offset[i].is_none()) {
+        Some(i) if z[i] < 0.0 => [&from[i], &to[i]].map(Extent::clone),
+        Some(i) => [&to[i], &from[i]].map(Extent::clone),
+        None if height == 0.0 => return Err(CommonDatumFault::Middles),
+        None => [height, 0.0].map(Extent::Number),
+    };
+    Ok(Separation::Along([to, from]))
 }
 
-/// Difference of two coordinates as a formula.
-fn difference(to: &Extent, from: &Extent, turned: bool) -> String {
-    let text = |of: &Extent| match of {
-        Extent::Number(value) => format!("{value:?}"),
-        Extent::Formula(text) => text.clone(),
-    };
-    let [to, from] = if turned { [from, to] } else { [to, from] };
-    format!("({} - {})", text(to), text(from))
+/// Difference of two coordinates as a text with the unit of lengths.
+fn difference([to, from]: &[Extent; 2], lines: &Lines) -> String {
+    match (to.number(), from.number()) {
+        (Some(to), Some(from)) => lines.length(&Extent::Number(to - from)),
+        _ => format!("({} - {})", lines.length(to), lines.length(from)),
+    }
 }
 
 /// Deviation of a common datum in the frame of its first feature, from those of its two features.
@@ -178,7 +177,7 @@ pub(super) fn deviation(features: [&ZonedFeature<'_>; 2], own: [&Torsor; 2], lin
     match separation {
         // The rotation carries the first middle to the second: z x (shift of b - shift of a) / distance.
         Separation::Along(distance) => {
-            let distance = lines.length(&distance);
+            let distance = difference(&distance, lines);
             let slope = |[a, b]: [Option<String>; 2], sign: f64| {
                 sum(&[(sign, b), (-sign, a)]).map(|text| format!("({text})/{distance}"))
             };

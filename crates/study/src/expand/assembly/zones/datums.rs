@@ -8,10 +8,9 @@ use std::ops::Range;
 use super::common;
 use super::deviation::Torsor;
 use super::entry::{ZoneKind, ZonedFeature};
-use super::frame::{ConstantFrame, cross, dot, number, unit};
+use super::frame::{ConstantFrame, cross, dot, place, unit};
 use super::lines::{Extent, Lines, at};
 use crate::error::{Fault, StudyFault};
-use crate::expand::{Tree, Value, quoted};
 use crate::faults::zone_fault::ZoneFault;
 use crate::scene::OpenZone;
 use sensitol_numeric::names::nearest;
@@ -354,24 +353,6 @@ fn lever(of: &ZonedFeature<'_>, datum: &ZonedFeature<'_>, lines: &Lines) -> [Opt
         _ if a[i] == b[i] => None,
         _ => Some(format!("({} - {})", lines.length(&a[i]), lines.length(&b[i]))),
     })
-}
-
-/// Coordinates of a feature in its part. Wrong ones are reported where they are read.
-pub(super) fn place(feature: &Tree) -> [Extent; 3] {
-    let items = ["plane", "axis", "point", "frame"].iter().find_map(|key| match feature.get(key).map(|of| &of.value) {
-        Some(Value::Array(items)) if items.len() == 3 => Some(items),
-        _ => None,
-    });
-    let coordinate = |tree: &Tree| match (&tree.value, number(tree)) {
-        (_, Some(value)) => Extent::Number(value),
-        (Value::Text(text), None) if sensitol::assembly::formula::is_plain(text) => Extent::Formula(quoted(text)),
-        (Value::Text(text), None) => Extent::Formula(format!("({text})")),
-        _ => Extent::Number(0.0),
-    };
-    match items.map(|items| &items[..]) {
-        Some([x, y, z]) => [x, y, z].map(coordinate),
-        _ => [0.0; 3].map(Extent::Number),
-    }
 }
 
 /// Adds a datum's deviation by the freedoms that no datum before has fixed.

@@ -1,6 +1,7 @@
 //! Constant frames of features, in which zones are carried from a datum to the features that are measured from it.
 
-use crate::expand::{Tree, Value};
+use super::lines::Extent;
+use crate::expand::{Tree, Value, quoted};
 
 /// Directions of a feature in its part that do not vary.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,4 +81,22 @@ pub(in crate::expand::assembly) fn word(text: &str) -> Option<[f64; 3]> {
     };
     let index = ["x", "y", "z"].iter().position(|axis| *axis == letter)?;
     Some([0, 1, 2].map(|i| if i == index { sign } else { 0.0 }))
+}
+
+/// Coordinates of a feature in its part. Wrong ones are reported where they are read.
+pub(super) fn place(feature: &Tree) -> [Extent; 3] {
+    let items = ["plane", "axis", "point", "frame"].iter().find_map(|key| match feature.get(key).map(|of| &of.value) {
+        Some(Value::Array(items)) if items.len() == 3 => Some(items),
+        _ => None,
+    });
+    let coordinate = |tree: &Tree| match (&tree.value, number(tree)) {
+        (_, Some(value)) => Extent::Number(value),
+        (Value::Text(text), None) if sensitol::assembly::formula::is_plain(text) => Extent::Formula(quoted(text)),
+        (Value::Text(text), None) => Extent::Formula(format!("({text})")),
+        _ => Extent::Number(0.0),
+    };
+    match items.map(|items| &items[..]) {
+        Some([x, y, z]) => [x, y, z].map(coordinate),
+        _ => [0.0; 3].map(Extent::Number),
+    }
 }

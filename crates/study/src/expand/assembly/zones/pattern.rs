@@ -2,10 +2,10 @@
 //!
 //! The body is displaced across the axes and turned about their middle. Both share the zone: the farthest feature leaves it by neither alone.
 
-use super::datums::{PartTorsor, add, place, push};
+use super::datums::{PartTorsor, add, push};
 use super::deviation::Torsor;
 use super::entry::{ZoneEntry, ZoneKind, ZonedFeature, zone};
-use super::frame::{ConstantFrame, cross, dot};
+use super::frame::{ConstantFrame, cross, dot, place};
 use super::lines::{Extent, LineUnit, Lines, Owner, at};
 use super::torsor::SHARED;
 use crate::error::{Fault, StudyFault, fault};
