@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use crate::assembly::Run;
@@ -78,7 +78,9 @@ const QUASI: [u64; 3] = [256, 4096, 65_536];
 pub const RESOLVED: f64 = 2.0;
 
 /// Method as it was run: a derivative method, or a sample with this number of points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(inline))]
+#[serde(into = "String")]
 #[non_exhaustive]
 pub enum Contender {
     /// Derivative method of the registry.
@@ -100,9 +102,9 @@ impl Contender {
     }
 }
 
-impl Serialize for Contender {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.name().serialize(serializer)
+impl From<Contender> for String {
+    fn from(contender: Contender) -> Self {
+        contender.name()
     }
 }
 
@@ -129,7 +131,6 @@ rescale!(Figures { mean, sigma } without { skewness, kurtosis, yield_ });
 /// Errors of a method against the reference: that of the mean in sigmas, that of sigma relative, the others absolute.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Errors {
     /// Absolute differences from the reference.
@@ -138,41 +139,23 @@ pub struct Errors {
     /// Standard errors of the reference, in the same units. Differences up to twice these are not resolved.
     #[serde(rename = "reference_standard_error")]
     pub reference: Figures,
+    /// Overall error, in sigmas: root of the sum of squares of the errors of mean and sigma. None if one of them is unknown.
+    pub overall: Option<f64>,
+    /// True if the overall error exceeds the part that may be due to the reference.
+    pub resolved: bool,
 }
 
 impl Errors {
-    /// Overall error, in sigmas: root of the sum of squares of the errors of mean and sigma. Returns None if one of them is unknown.
-    pub fn overall(&self) -> Option<f64> {
-        Some(libm::hypot(self.off.mean?, self.off.sigma?))
+    /// Errors by the differences from the reference and its standard errors, in the same units.
+    fn of(off: Figures, reference: Figures) -> Self {
+        let overall = off.mean.zip(off.sigma).map(|(mean, sigma)| libm::hypot(mean, sigma));
+        let errors = Self { off, reference, overall, resolved: false };
+        Self { resolved: overall.is_some_and(|overall| overall > errors.floor()), ..errors }
     }
 
     /// Overall error below which the reference cannot resolve: twice its standard error.
     pub fn floor(&self) -> f64 {
         RESOLVED * libm::hypot(self.reference.mean.unwrap_or(0.0), self.reference.sigma.unwrap_or(0.0))
-    }
-
-    /// True if the overall error exceeds the part that may be due to the reference.
-    pub fn resolved(&self) -> bool {
-        self.overall().is_some_and(|overall| overall > self.floor())
-    }
-}
-
-/// Errors with derived figures, as serialised.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ErrorShape<'r> {
-    #[serde(flatten, serialize_with = "Errors::serialize")]
-    #[cfg_attr(feature = "schema", schemars(with = "Errors"))]
-    own: &'r Errors,
-    /// Overall error, in sigmas: root of the sum of squares of the errors of mean and sigma.
-    overall: Option<f64>,
-    /// True if the reference resolves the overall error.
-    resolved: bool,
-}
-
-impl Serialize for Errors {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        ErrorShape { own: self, overall: self.overall(), resolved: self.resolved() }.serialize(serializer)
     }
 }
 
@@ -208,7 +191,6 @@ pub struct Ran {
 pub struct NotRun {
     /// Method or sample that was not run.
     #[serde(rename = "method")]
-    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub contender: Contender,
     /// Evaluations that the method needs, if that is known.
     pub evaluations: Option<u64>,
@@ -532,28 +514,28 @@ fn errors(found: &Figures, reference: &SimulatedCharacteristic) -> Errors {
     let unit = of.sigma.filter(|&sigma| sigma > 0.0);
     let off = |a: Option<f64>, b: Option<f64>, unit: Option<f64>| Some((a? - b?).abs() / unit?);
     let own = |estimate: Option<Estimate>, unit: Option<f64>| Some(estimate?.standard_error? / unit?);
-    Errors {
-        off: Figures {
+    Errors::of(
+        Figures {
             mean: off(found.mean, of.mean, unit),
             sigma: off(found.sigma, of.sigma, unit),
             skewness: off(found.skewness, of.skewness, Some(1.0)),
             kurtosis: off(found.kurtosis, of.kurtosis, Some(1.0)),
             yield_: off(found.yield_, of.yield_, Some(1.0)),
         },
-        reference: Figures {
+        Figures {
             mean: own(reference.mean, unit),
             sigma: own(reference.sigma, unit),
             skewness: own(reference.skewness, Some(1.0)),
             kurtosis: own(reference.kurtosis, Some(1.0)),
             yield_: reference.yield_.map(|share| one_error(share.value, share.interval)),
         },
-    }
+    )
 }
 
 /// True for every method that is not dominated on a characteristic. Errors below the resolution of the reference are equal: only the
 /// cheapest of these methods is on the front.
 fn front(ran: &[Ran], c: usize) -> Vec<bool> {
-    let error = |ran: &Ran| ran.errors[c].overall().map(|overall| overall.max(ran.errors[c].floor()));
+    let error = |ran: &Ran| ran.errors[c].overall.map(|overall| overall.max(ran.errors[c].floor()));
     let mut best = f64::INFINITY;
     let mut front = vec![false; ran.len()];
     for at in 0..ran.len() {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use sensitol_numeric::names::UnknownName;
 
@@ -15,7 +15,9 @@ use sensitol_numeric::names::UnknownName;
 /// let error = "six_m".parse::<Method>().unwrap_err();
 /// assert_eq!(error.to_string(), "there is no method `six_m`; did you mean `six-n`?");
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(inline))]
+#[serde(into = "&'static str")]
 #[non_exhaustive]
 pub enum Method {
     /// First order: root of the sum of squares.
@@ -95,8 +97,8 @@ impl FromStr for Method {
     }
 }
 
-impl Serialize for Method {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
+impl From<Method> for &'static str {
+    fn from(method: Method) -> Self {
+        method.name()
     }
 }

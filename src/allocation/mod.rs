@@ -37,7 +37,6 @@ pub use crate::allocation::cost::priced_group::{Offer, Priced};
 pub use crate::allocation::cost::priced_group::{PricedZone, ZonePart};
 pub use crate::allocation::cost::process_option::Made;
 pub use crate::allocation::requirement::quality_loss::QualityLoss;
-pub use crate::allocation::result::allocation::ProofShape;
 pub use crate::allocation::surface::joint_yield::JointYield;
 
 pub use crate::allocation::cost::setup_cost::SetUp;

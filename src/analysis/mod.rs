@@ -34,11 +34,11 @@ pub use crate::analysis::result::quantile_estimates::QuantileEstimates;
 pub use crate::analysis::result::range_figures::{LinearFigures, RangeFigures};
 pub use crate::analysis::result::sampled_model::SampledModel;
 pub use crate::analysis::result::sampled_tail::SampledTail;
-pub use crate::analysis::result::serialisation::CharacteristicShape;
+pub use crate::analysis::result::serialisation::CharacteristicConclusion;
 pub use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, SobolIndices};
 use crate::analysis::result::stage_figures::with_stage;
 pub(crate) use crate::analysis::result::verification::TRUSTED;
-pub use crate::analysis::result::verification::{VarianceShare, Verification, VerificationKind};
+pub use crate::analysis::result::verification::{VarianceShare, Verification, VerificationKind, VerifiedFigures};
 pub use crate::analysis::result::yield_source::YieldSource;
 use crate::analysis::sampling::accuracy_target;
 use crate::analysis::sampling::jump;
@@ -73,7 +73,6 @@ use crate::problem::Problem;
 use crate::rare::RefutedTail;
 use crate::summary::{RunSummary, StopReason};
 use crate::warning::Warning;
-use sensitol_numeric::json_form::through;
 use sensitol_numeric::law::SurfaceLaw;
 use sensitol_numeric::parallel::join;
 use sensitol_numeric::parallel::prelude::*;
@@ -87,7 +86,6 @@ use sensitol_numeric::verdict::{self, Judged};
 #[serde(remote = "Self")]
 pub struct Analysis {
     /// Method that was run. For `auto`, the method that it chose.
-    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub method: Method,
     /// Dimensions that vary and on which some characteristic can depend, N.
     pub varying: usize,
@@ -95,7 +93,6 @@ pub struct Analysis {
     #[serde(flatten)]
     pub run: RunSummary,
     /// The results of every characteristic, in the problem's order.
-    #[cfg_attr(feature = "schema", schemars(with = "Vec<CharacteristicShape>"))]
     pub characteristics: Vec<CharacteristicAnalysis>,
     /// Share of assemblies that keep the limits of all characteristics at once, with its error. None if fewer than two characteristics have
     /// limits, or if it is unknown.
@@ -105,16 +102,15 @@ pub struct Analysis {
     #[serde(rename = "joint_yield_interval")]
     pub joint_interval: Option<[f64; 2]>,
     /// Verdict on the target for the joint yield. None if there is no such target.
-    #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
     /// Correlations of every two characteristics. Empty with one characteristic, and with more than 40.
     #[serde(rename = "characteristic_correlation")]
     pub correlations: Vec<OutputCorrelation>,
     /// The findings of `auto` and the use of its points; None for any other method.
     pub account: Option<Account>,
+    /// Source of the derivatives from which the moments follow. None if they follow from none.
+    pub derivatives: Option<DerivativeSource>,
     /// The basis of the moments.
-    #[serde(flatten, serialize_with = "through::<crate::analysis::result::json::BasisShape, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "crate::analysis::result::json::BasisShape"))]
     pub basis: Basis,
     /// Surface from which the moments follow.
     #[serde(skip)]
@@ -316,6 +312,7 @@ pub(crate) fn analyze_keeping(
             ..spent.and(&extremes.run)
         },
         account,
+        derivatives: outcome.basis.derivatives(),
         basis: outcome.basis,
         surface,
         joint_requirement: joint_requirement(problem, options, joint, &characteristics),

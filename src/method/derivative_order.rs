@@ -1,5 +1,6 @@
 //! Order of the derivatives that a method uses, and basis of its moments.
 
+use crate::method::DerivativeSource;
 use sensitol_numeric::surrogate::Univariate;
 
 /// Highest order of the derivatives that a method uses.
@@ -34,4 +35,15 @@ pub enum Basis {
     LeastSquares,
     /// Quadrature of the values themselves, without a surrogate.
     Quadrature,
+}
+
+impl Basis {
+    /// Source of the derivatives from which the moments follow. Returns None if they follow from none.
+    pub(crate) fn derivatives(self) -> Option<DerivativeSource> {
+        match self {
+            Self::Exact => Some(DerivativeSource::Exact),
+            Self::Differences => Some(DerivativeSource::Difference),
+            Self::LeastSquares | Self::Quadrature => None,
+        }
+    }
 }

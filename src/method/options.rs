@@ -4,6 +4,8 @@ use std::fmt;
 
 use std::str::FromStr;
 
+use serde::Serialize;
+
 use crate::method::Method;
 use crate::plan::Stencil;
 use crate::warning::Figure;
@@ -108,7 +110,9 @@ impl Accuracies {
 }
 
 /// Source of the derivatives.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
 pub enum DerivativeSource {
     /// Exact at the means, for sensitivities and moments alike. Nothing is evaluated beside the means.
     Exact,

@@ -28,7 +28,6 @@
 mod design_point;
 mod estimate;
 mod exploration;
-mod json;
 mod limit_point;
 mod measured;
 mod mixture;
@@ -48,17 +47,19 @@ use crate::estimate::NormalSpace;
 use crate::evaluation::{Evaluator, Restoration, Restore, at_any_size, history};
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
-#[cfg(feature = "schema")]
-pub(crate) use crate::rare::json::RareShape;
 use crate::simulation::{KnownSurrogate, Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
 use crate::warning::Warning;
+use crate::warning::serialize::warnings_last;
 use sensitol_numeric::characteristic::Characteristic;
-use sensitol_numeric::json_form::{text, through};
+use sensitol_numeric::json_form::text;
+use sensitol_numeric::sampling::SamplingError;
 use sensitol_numeric::sampling::SamplingInterval;
-use sensitol_numeric::sampling::{Estimate, SamplingError};
+use sensitol_numeric::serialize_with_conclusion;
 use sensitol_numeric::time::Instant;
 use sensitol_numeric::verdict::Judged;
+#[cfg(feature = "schema")]
+use sensitol_numeric::{json_form::Concluded, verdict::Verdicts};
 
 use crate::rare::design_point::{Place, places};
 use crate::rare::exploration::Explored;
@@ -127,7 +128,6 @@ impl RareOptions {
 pub struct RareEvents {
     /// Method of the surrogate.
     #[serde(rename = "surrogate")]
-    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub method: Method,
     /// Evaluations and time, including those of the surrogate, and the reason for an end before all points or the
     /// accuracy.
@@ -151,10 +151,8 @@ pub struct RareEvents {
     #[serde(rename = "joint_yield_interval")]
     pub joint_interval: Option<[f64; 2]>,
     /// Verdict on the target of the joint yield. None if there is no target.
-    #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
     /// Results of every characteristic, in the problem's order.
-    #[cfg_attr(feature = "schema", schemars(with = "Vec<RareShape>"))]
     pub characteristics: Vec<RareCharacteristic>,
     /// Warnings about estimates that rest on few points, and about points without a value.
     #[serde(skip)]
@@ -168,6 +166,7 @@ pub struct RareEvents {
 pub struct RareCharacteristic {
     /// Characteristic, with its limits.
     #[serde(flatten)]
+    #[cfg_attr(feature = "schema", schemars(with = "Concluded<Characteristic, Verdicts>"))]
     pub characteristic: Characteristic,
     /// Number of points at which the characteristic has no value.
     pub failed: u64,
@@ -176,10 +175,8 @@ pub struct RareCharacteristic {
     #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub error: Option<EvaluationError>,
     /// Results below the lower limit. None if there is no lower limit.
-    #[serde(skip)]
     pub below: Option<Beyond>,
     /// Results above the upper limit. None if there is no upper limit.
-    #[serde(skip)]
     pub above: Option<Beyond>,
     /// Yield. None if the probability beyond one of the limits is unknown.
     #[serde(rename = "yield")]
@@ -201,14 +198,15 @@ pub struct Beyond {
     pub limit: f64,
     /// Probability beyond the limit. None if no point lies there. The interval is then a bound, for a corner that
     /// none of the explored points met.
-    #[serde(flatten, serialize_with = "through::<crate::rare::json::ProbabilityShape, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "crate::rare::json::ProbabilityShape"))]
-    pub probability: Option<Estimate>,
+    pub probability: Option<f64>,
+    /// Standard error of the probability.
+    pub standard_error: Option<f64>,
+    /// Probability in parts per million.
+    pub ppm: Option<f64>,
     /// 95 % interval of the probability.
     pub interval: [f64; 2],
-    /// Probability if no point without a value lies beyond, and if all of them do.
-    #[serde(skip)]
-    pub bounds: [f64; 2],
+    /// Probability if no point without a value lies beyond, and if all of them do. None if every point has a value.
+    pub bounds: Option<[f64; 2]>,
     /// Number of points beyond the limit.
     pub hits: u64,
     /// Number of equally weighted points with the same information: `(sum of weights)^2 / sum of their squares`.
@@ -326,6 +324,9 @@ pub fn rare_with(
 ) -> Result<RareEvents, RareError> {
     at_any_size(problem, run, |problem, run| sought(problem, options, run, pace))
 }
+
+warnings_last!(RareEvents);
+serialize_with_conclusion!(RareCharacteristic);
 
 impl Restore for RareEvents {
     fn restore(&mut self, back: &Restoration<'_>) {

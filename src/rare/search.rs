@@ -472,9 +472,11 @@ impl<'a> Search<'a> {
             };
             Some(Beyond {
                 limit: self.targets[index].given,
-                probability: found.probability,
+                probability: found.probability.map(|of| of.value),
+                standard_error: found.probability.and_then(|of| of.standard_error),
+                ppm: found.probability.map(|of| 1e6 * of.value),
                 interval: found.interval,
-                bounds: found.bounds,
+                bounds: (model.lost[c].0 > 0).then_some(found.bounds),
                 hits: found.hits,
                 effective_samples: found.effective,
                 greatest_part: found.greatest_part,

@@ -4,8 +4,7 @@ use crate::rare::estimate::ProbabilityEstimate;
 use crate::rare::{Beyond, RareCharacteristic};
 use sensitol_numeric::characteristic::SpecLimits;
 use sensitol_numeric::requirement::{Requirement, RequirementFigures};
-use sensitol_numeric::sampling::Estimate;
-use sensitol_numeric::verdict::{self, Judged, JudgedFigure, Verdict};
+use sensitol_numeric::verdict::{self, Judged, JudgedFigure, Verdict, Verdicts};
 
 /// Yield of a characteristic.
 #[derive(Clone, Copy)]
@@ -38,14 +37,13 @@ pub(super) fn within(
     if sides.is_empty() || sides.len() != [limits.lower(), limits.upper()].iter().flatten().count() {
         return None;
     }
-    let value = |beyond: &Beyond| beyond.probability.map(|probability| probability.value);
     let apart = |end: usize| {
-        let distances = sides.iter().map(|beyond| beyond.interval[end] - value(beyond).unwrap_or(0.0));
+        let distances = sides.iter().map(|beyond| beyond.interval[end] - beyond.probability.unwrap_or(0.0));
         distances.fold(0.0, libm::hypot)
     };
-    let seen: f64 = sides.iter().filter_map(|beyond| value(beyond)).sum();
-    let (known, unseen): (Vec<&Beyond>, Vec<&Beyond>) = sides.iter().partition(|beyond| value(beyond).is_some());
-    let open: f64 = known.iter().map(|beyond| beyond.interval[1] - value(beyond).unwrap_or(0.0)).sum();
+    let seen: f64 = sides.iter().filter_map(|beyond| beyond.probability).sum();
+    let (known, unseen): (Vec<&Beyond>, Vec<&Beyond>) = sides.iter().partition(|beyond| beyond.probability.is_some());
+    let open: f64 = known.iter().map(|beyond| beyond.interval[1] - beyond.probability.unwrap_or(0.0)).sum();
     let negligible = !known.is_empty() && unseen.iter().map(|beyond| beyond.interval[1]).sum::<f64>() <= open;
     let interval = verdict::share([1.0 - seen - apart(1), 1.0 - seen + apart(0)]);
     let value = (unseen.is_empty() || negligible).then(|| (1.0 - seen).clamp(0.0, 1.0));
@@ -54,8 +52,8 @@ pub(super) fn within(
 
 /// Probability of keeping one limit, minus that of lying beyond the other.
 fn keeping(kept: ProbabilityEstimate, other: Option<&Beyond>) -> Within {
-    let estimate = |probability: Option<Estimate>| probability.map_or(0.0, |estimate| estimate.value);
-    let (keeps, lost) = (estimate(kept.probability), other.map_or(0.0, |beyond| estimate(beyond.probability)));
+    let keeps = kept.probability.map_or(0.0, |estimate| estimate.value);
+    let lost = other.and_then(|beyond| beyond.probability).unwrap_or(0.0);
     let apart = |end: usize| {
         let of_other = other.map_or(0.0, |beyond| beyond.interval[1 - end] - lost);
         libm::hypot(kept.interval[end] - keeps, of_other)
@@ -72,31 +70,30 @@ impl RequirementFigures for RareCharacteristic {
     /// Yield with its interval, in which points without a value may all be rejects.
     fn yield_(&self) -> JudgedFigure {
         let sides = [&self.below, &self.above].into_iter().flatten();
-        let unknown: f64 = sides.map(|beyond| beyond.bounds[1] - beyond.bounds[0]).sum();
+        let unknown: f64 = sides.filter_map(|beyond| beyond.bounds).map(|[least, most]| most - least).sum();
         JudgedFigure { value: self.yield_, interval: self.yield_interval.map(|[low, high]| [low - unknown, high]) }
     }
 }
 
 impl RareCharacteristic {
-    /// Probability beyond one of the limits if no point without a value lies there, and if all do. Returns None if
-    /// every point has a value.
-    pub fn bounds(&self, beyond: &Beyond) -> Option<[f64; 2]> {
-        (self.failed > 0).then_some(beyond.bounds)
-    }
-
     /// Verdict on any requirement, the characteristic's own or another. Only a yield can be judged, because nothing is
     /// known of the values between the limits.
     pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         Judged::by(requirement, self).unless(self.unfinished)
     }
 
+    /// Verdicts that follow from the figures.
+    pub fn conclusion(&self) -> Verdicts {
+        Verdicts::by(&self.characteristic, |requirement| self.judge(requirement))
+    }
+
     /// Verdicts on all requirements of the characteristic, including its target yield.
     pub fn requirements(&self) -> Vec<Judged> {
-        verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
+        self.conclusion().requirements
     }
 
     /// Verdict on the target yield. Returns None if there is no target.
     pub fn verdict(&self) -> Option<Verdict> {
-        verdict::on_target_yield(&self.characteristic, |target| self.judge(target))
+        self.conclusion().verdict
     }
 }

@@ -11,10 +11,11 @@ use crate::simulation::control_variate::Twin;
 use crate::simulation::count::{Count, Replicate};
 use crate::simulation::indices::SampledFactor;
 use crate::simulation::inspection::inspected;
-use crate::simulation::json::value;
 use crate::simulation::rare_switch_side::RareSwitchSides;
 use crate::simulation::replicate_error::of_replicates;
 use crate::simulation::replicate_moments::{moments, pooled, quantile};
+#[cfg(feature = "schema")]
+use crate::simulation::serialisation::SimulatedConclusion;
 use crate::simulation::surface_difference::{
     Controlled, Difference, Shares, carried, largest, moments as controlled, shares,
 };
@@ -22,13 +23,15 @@ use crate::warning::Warning;
 use sensitol_numeric::capability::{self, InspectionRisks, TAIL};
 use sensitol_numeric::characteristic::KeptLimits;
 use sensitol_numeric::characteristic::{Characteristic, SpecLimits};
+#[cfg(feature = "schema")]
+use sensitol_numeric::json_form::Concluded;
 use sensitol_numeric::json_form::{RejectIntervals, through};
 use sensitol_numeric::json_form::{millionths, text};
 use sensitol_numeric::power::rescale;
 use sensitol_numeric::requirement::{Requirement, RequirementFigures};
 use sensitol_numeric::sampling::{Estimate, FEWEST, Summary, of_moments, wilson};
 use sensitol_numeric::sampling::{LargestShare, SamplingInterval, clopper_pearson, one_error, settled};
-use sensitol_numeric::verdict::{self, Judged, JudgedFigure, Verdict};
+use sensitol_numeric::verdict::{self, Judged, JudgedFigure, Verdict, Verdicts};
 
 /// Estimates for one characteristic, each with its standard error. Unknown values are None.
 #[derive(Debug, Clone, Serialize)]
@@ -37,6 +40,7 @@ use sensitol_numeric::verdict::{self, Judged, JudgedFigure, Verdict};
 pub struct SimulatedCharacteristic {
     /// Characteristic, with its limits.
     #[serde(flatten)]
+    #[cfg_attr(feature = "schema", schemars(with = "Concluded<Characteristic, SimulatedConclusion>"))]
     pub characteristic: Characteristic,
     /// Number of points with a value.
     pub samples: u64,
@@ -94,7 +98,6 @@ pub struct SimulatedCharacteristic {
     /// Histogram of the sample, with some tens of intervals.
     pub histogram: Option<Histogram>,
     /// Effect of the surrogate as control variate. None if none was requested, or it does not vary.
-    #[cfg_attr(feature = "schema", schemars(with = "Option<crate::simulation::json::ControlShape>"))]
     pub control: Option<SurrogateControl>,
     /// Sobol' indices of every input. None if none were requested, or the sample does not determine them.
     #[serde(rename = "sobol")]
@@ -114,19 +117,29 @@ pub struct SimulatedCharacteristic {
 }
 
 /// Effect of a surrogate as control variate.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SurrogateControl {
     /// Method of the surrogate.
     pub method: Method,
     /// Evaluations of the surrogate, for all characteristics together.
     pub evaluations: usize,
-    /// Ratio of the standard errors of the mean without and with the surrogate. None if it is unknown, or the denominator is 0.
-    pub mean: Option<f64>,
-    /// Ratio of the standard errors of sigma, as for the mean.
-    pub sigma: Option<f64>,
+    /// Reduction of standard errors.
+    pub reduction: Reduction,
     /// Number of points that carry mean, sigma, skewness and kurtosis.
+    #[serde(skip)]
     pub(crate) carried: [f64; 4],
+}
+
+/// Ratios of the standard errors without and with the surrogate. None if unknown, and if the denominator is 0.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Reduction {
+    /// Ratio for the mean.
+    pub mean: Option<f64>,
+    /// Ratio for sigma.
+    pub sigma: Option<f64>,
 }
 
 /// Moments of a sample without standard errors, because a few points decide them, or assemblies that the sample does not contain.
@@ -151,6 +164,11 @@ pub struct YieldEstimate {
     pub interval: [f64; 2],
     /// Share if every point without a value is rejected, and if none is.
     pub bounds: [f64; 2],
+}
+
+/// Serializes an estimate without its standard error, which is written elsewhere.
+fn value<S: Serializer>(estimate: &Option<Estimate>, serializer: S) -> Result<S::Ok, S::Error> {
+    estimate.map(|estimate| estimate.value).serialize(serializer)
 }
 
 /// Serializes a yield without its interval, which is written elsewhere.
@@ -253,8 +271,7 @@ impl SimulatedCharacteristic {
             control: evidence.beside.as_ref().map(|(twin, differences)| SurrogateControl {
                 method: twin.method,
                 evaluations: twin.evaluations,
-                mean: reduction(plain[0], mean),
-                sigma: reduction(plain[1], sigma),
+                reduction: Reduction { mean: reduction(plain[0], mean), sigma: reduction(plain[1], sigma) },
                 carried: fewer(carried(differences)),
             }),
             indices: None,
@@ -355,14 +372,19 @@ impl SimulatedCharacteristic {
         self.yield_.filter(|_| self.failed > 0).map(|share| share.bounds)
     }
 
+    /// Verdicts on the characteristic.
+    pub(super) fn verdicts(&self) -> Verdicts {
+        Verdicts::by(&self.characteristic, |requirement| self.judge(requirement))
+    }
+
     /// Verdicts on all requirements of the characteristic, its target yield included.
     pub fn requirements(&self) -> Vec<Judged> {
-        verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
+        self.verdicts().requirements
     }
 
     /// Verdict on the target yield. Returns None if there is no target.
     pub fn verdict(&self) -> Option<Verdict> {
-        verdict::on_target_yield(&self.characteristic, |target| self.judge(target))
+        self.verdicts().verdict
     }
 
     /// Warning of values whose powers overflow a double.

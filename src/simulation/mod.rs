@@ -6,7 +6,6 @@ mod count;
 mod indices;
 mod inspection;
 mod joint_result;
-mod json;
 mod measured_interval;
 mod portions;
 mod rare_switch_side;
@@ -20,10 +19,10 @@ mod surface_difference;
 mod surrogates;
 mod tally;
 
-pub use crate::simulation::serialisation::SimulatedShape;
+pub use crate::simulation::serialisation::SimulatedConclusion;
 
 pub(crate) use characteristic::{BINS, CHOICE};
-pub use characteristic::{Histogram, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
+pub use characteristic::{Histogram, Reduction, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 pub use indices::{IndexEstimate, SampledFactor};
 pub use sensitol_numeric::sampling::{Estimate, Sampler, SamplingError};
 pub use shard::{merge_shards, simulate_shard};
@@ -45,7 +44,6 @@ use crate::summary::RunSummary;
 use crate::warning::{Advice, Warning};
 use count::CountingScale;
 use portions::Portions;
-use sensitol_numeric::json_form::through;
 use sensitol_numeric::parallel::prelude::*;
 use sensitol_numeric::parallel::{Rooms, join};
 use sensitol_numeric::power::{Rescale, Rescaling};
@@ -188,8 +186,6 @@ const UNSETTLED: u64 = 1 << 24;
 #[serde(remote = "Self")]
 pub struct Simulation {
     /// Sampler of the points.
-    #[serde(flatten, serialize_with = "through::<crate::simulation::json::SamplerShape, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "crate::simulation::json::SamplerShape"))]
     pub sampler: Sampler,
     /// Points and time, including those of the surrogate, and the reason of an end before all points were drawn or the accuracy was
     /// reached.
@@ -209,13 +205,11 @@ pub struct Simulation {
     #[serde(rename = "joint_yield")]
     pub joint: Option<YieldEstimate>,
     /// Verdict on the target for the joint yield. None if there is no such target.
-    #[cfg_attr(feature = "schema", schemars(with = "Option<sensitol_numeric::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
     /// Correlations of every two characteristics. Empty with one characteristic, and with more than 40.
     #[serde(rename = "characteristic_correlation")]
     pub correlations: Vec<OutputCorrelation>,
     /// The results of every characteristic, in the problem's order.
-    #[cfg_attr(feature = "schema", schemars(with = "Vec<SimulatedShape>"))]
     pub characteristics: Vec<SimulatedCharacteristic>,
     /// Warnings, such as of points without a value, and of a model that is not repeatable.
     #[serde(skip)]

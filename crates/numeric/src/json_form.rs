@@ -16,6 +16,43 @@ where
     T::from(value).serialize(serializer)
 }
 
+/// Own fields of a result, followed by the figures that are concluded from them.
+#[derive(Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Concluded<O, C> {
+    #[serde(flatten)]
+    own: O,
+    #[serde(flatten)]
+    conclusion: C,
+}
+
+impl<O, C> Concluded<O, C> {
+    /// Joins both parts.
+    pub fn new(own: O, conclusion: C) -> Self {
+        Self { own, conclusion }
+    }
+}
+
+/// Implements `Serialize` for a result that derives it with `#[serde(remote = "Self")]`: its own fields, then those of the value that its
+/// method `conclusion` returns. A flattened field describes both by `schemars(with = "Concluded<Field, Conclusion>")`.
+#[macro_export]
+macro_rules! serialize_with_conclusion {
+    ($result:ty) => {
+        impl serde::Serialize for $result {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                struct Own<'r>(&'r $result);
+                impl serde::Serialize for Own<'_> {
+                    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                        <$result>::serialize(self.0, serializer)
+                    }
+                }
+                let whole = $crate::json_form::Concluded::new(Own(self), self.conclusion());
+                serde::Serialize::serialize(&whole, serializer)
+            }
+        }
+    };
+}
+
 /// Values for each of the four moments.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

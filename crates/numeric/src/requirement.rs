@@ -2,12 +2,14 @@
 //!
 //! A new kind is a variant of [`Requirement`], its arms in this file, and a method of [`RequirementFigures`].
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::power::Power;
 
 /// Requirement of a characteristic, used to allocate tolerances and to judge results.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(into = "Required")]
 pub enum Requirement {
     /// Least share within the limits. Allocation computes it by four moments and the Pearson fit.
     Yield(f64),
@@ -114,9 +116,9 @@ pub struct Required {
     required: f64,
 }
 
-impl From<&Requirement> for Required {
-    fn from(of: &Requirement) -> Self {
-        Self::of(of, of.amount())
+impl From<Requirement> for Required {
+    fn from(of: Requirement) -> Self {
+        Self::of(&of, of.amount())
     }
 }
 
@@ -124,12 +126,6 @@ impl Required {
     /// Requirement with another amount.
     pub fn of(requirement: &Requirement, amount: f64) -> Self {
         Self { requirement: requirement.key(), required: amount }
-    }
-}
-
-impl Serialize for Requirement {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Required::from(self).serialize(serializer)
     }
 }
 

@@ -9,13 +9,12 @@
 //! An interval is the estimate and two of its errors on either side, cut to the possible values of the figure. Evidence against the
 //! estimate widens it: another estimate from the same surface, or points without a value. A run that was stopped has no interval.
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::capability;
 use crate::characteristic::{Characteristic, SpecLimits};
-use crate::json_form::{ends, finite};
 use crate::power::Power;
-use crate::requirement::{Required, Requirement, RequirementFigures, Sense};
+use crate::requirement::{Requirement, RequirementFigures, Sense};
 use crate::sampling::SamplingInterval;
 
 /// Errors on either side of an estimate that make its interval: 95 % if they are standard errors.
@@ -120,48 +119,52 @@ impl JudgedFigure {
 }
 
 /// Requirement with the value found, its interval and the verdict.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Judged {
     /// Requirement that is judged.
+    #[serde(flatten)]
     pub requirement: Requirement,
     /// Value in the requirement's own measure: yield, Cpk or sigma. For rss and worst case, the fraction of the limits used. None if it is
     /// unknown.
+    #[cfg_attr(feature = "schema", schemars(description = "Value found, null if it is unknown."))]
     pub value: Option<f64>,
-    /// Interval of the value. None if it is unknown.
+    /// Interval of the value, an end null if it is unbounded. None as a whole if it is unknown.
+    #[cfg_attr(feature = "schema", schemars(with = "Option<[Option<f64>; 2]>"))]
     pub interval: Option<[f64; 2]>,
+    /// True if the requirement is met. None if that is unknown.
+    pub met: Option<bool>,
     /// Verdict from the interval.
     pub verdict: Verdict,
 }
 
-/// Judged requirement as serialised in results.
-#[derive(Serialize)]
+/// Verdicts on the requirements of a characteristic.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct JudgedShape {
-    #[serde(flatten)]
-    required: Required,
-    /// Value found, null if it is unknown.
-    value: Option<f64>,
-    /// Interval of the value, an end null if it is unbounded. Null as a whole if it is unknown.
-    interval: Option<[Option<f64>; 2]>,
-    /// True if the requirement is met. Null if that is unknown.
-    met: Option<bool>,
-    /// Verdict in a word: met, missed or inconclusive.
-    verdict: Verdict,
+pub struct Verdicts {
+    /// True if the target yield is met. None if there is no target, and if it is unknown.
+    pub met: Option<bool>,
+    /// Verdict on the target yield. None if there is no target.
+    pub verdict: Option<Verdict>,
+    /// Verdicts on all requirements, the target yield included.
+    pub requirements: Vec<Judged>,
 }
 
-impl Serialize for Judged {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let required = Required::from(&self.requirement);
-        let (value, interval) = (self.value.and_then(finite), self.interval.map(ends));
-        JudgedShape { required, value, interval, met: self.verdict.met(), verdict: self.verdict }.serialize(serializer)
+impl Verdicts {
+    /// Verdicts by `judge`, the target yield first.
+    pub fn by(characteristic: &Characteristic, judge: impl Fn(Requirement) -> Judged) -> Self {
+        let verdict = characteristic.target().map(|target| judge(target).verdict);
+        let requirements = characteristic.requirements().into_iter().map(judge).collect();
+        Self { met: verdict.and_then(Verdict::met), verdict, requirements }
     }
 }
 
 impl Judged {
     /// Judges a requirement by a value and its interval.
     pub fn of(requirement: Requirement, value: Option<f64>, interval: Option<[f64; 2]>) -> Self {
-        Self { requirement, value, interval, verdict: Verdict::of(requirement, interval) }
+        let verdict = Verdict::of(requirement, interval);
+        Self { requirement, value, interval, met: verdict.met(), verdict }
     }
 
     /// Judges a requirement by the figure of its kind.
@@ -184,7 +187,7 @@ impl Judged {
             requirement: self.requirement.times(power),
             value: self.value.and_then(|value| power.checked(value)),
             interval: self.interval.map(|interval| interval.map(|end| power.times(end))),
-            verdict: self.verdict,
+            ..self
         }
     }
 
@@ -199,16 +202,6 @@ impl Judged {
     pub fn unless(self, unfinished: bool) -> Self {
         if unfinished { Self::of(self.requirement, self.value, None) } else { self }
     }
-}
-
-/// Judges every requirement of a characteristic by `judge`, its target yield first.
-pub fn judged(characteristic: &Characteristic, judge: impl Fn(Requirement) -> Judged) -> Vec<Judged> {
-    characteristic.requirements().into_iter().map(judge).collect()
-}
-
-/// Verdict on the target yield of a characteristic by `judge`. Returns None without a target.
-pub fn on_target_yield(characteristic: &Characteristic, judge: impl Fn(Requirement) -> Judged) -> Option<Verdict> {
-    characteristic.target().map(|target| judge(target).verdict)
 }
 
 /// Worst of all verdicts: missed before inconclusive before met. Returns None if there are no verdicts.

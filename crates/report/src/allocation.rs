@@ -3,20 +3,14 @@
 use serde::Serialize;
 
 use crate::{About, Head, WarningReport};
-#[cfg(feature = "schema")]
-use sensitol::allocation::ProofShape;
 use sensitol::allocation::{
     Allocated, Allocation, Attainable, CostBasis, FrontPoint, Goal, JointKept, JointYield, Kept, Moved, Proof, SetUp,
     ShadowPrice, Status,
 };
-#[cfg(feature = "schema")]
-use sensitol::analysis::CharacteristicShape;
 use sensitol::analysis::{Analysis, CharacteristicAnalysis};
 use sensitol::method::Method;
 use sensitol::problem::Problem;
 use sensitol::simulation::SimulatedCharacteristic;
-#[cfg(feature = "schema")]
-use sensitol::simulation::SimulatedShape;
 use sensitol::summary::RunSummary;
 use sensitol::warning::Warning;
 
@@ -28,7 +22,6 @@ pub struct AllocationReport {
     #[serde(flatten)]
     pub(crate) head: Head,
     /// The method by which derivatives were taken.
-    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub(crate) method: Method,
     /// `optimal`, `local-optimum`, `almost-optimal`, `infeasible`, `no-feasible-point-found`, `inconclusive` or `out-of-time`.
     pub(crate) status: Status,
@@ -68,7 +61,6 @@ pub struct AllocationReport {
     /// The requirement that cannot be kept, and the best that can be had.
     pub(crate) attainable: Option<OfCharacteristic<Attainable>>,
     /// The evidence that nothing is cheaper.
-    #[cfg_attr(feature = "schema", schemars(with = "ProofShape"))]
     pub(crate) proof: Proof,
     /// Factor of all tolerances at which some requirement is just kept.
     pub(crate) loosest_scaling: BeforeAfter<Option<f64>>,
@@ -151,10 +143,8 @@ pub(crate) struct AllocatedCharacteristic {
     /// Unit of the characteristic.
     pub(crate) unit: Option<String>,
     /// Results of `analyze` at the tolerances before.
-    #[cfg_attr(feature = "schema", schemars(with = "CharacteristicShape"))]
     pub(crate) before: CharacteristicAnalysis,
     /// Results of `analyze` at the tolerances found; null if none were found.
-    #[cfg_attr(feature = "schema", schemars(with = "Option<CharacteristicShape>"))]
     pub(crate) after: Option<CharacteristicAnalysis>,
 }
 
@@ -165,7 +155,6 @@ pub(crate) struct ConfirmationReport {
     /// Points.
     pub(crate) samples: u64,
     /// Every characteristic, as `simulate` reports it.
-    #[cfg_attr(feature = "schema", schemars(with = "Vec<SimulatedShape>"))]
     pub(crate) characteristics: Vec<SimulatedCharacteristic>,
 }
 

@@ -11,12 +11,8 @@ use crate::figures::{Figures as _, Named};
 use crate::overview as glance;
 use crate::overview::OverviewLine;
 use crate::{About, Head, head};
-#[cfg(feature = "schema")]
-use sensitol::compare::ErrorShape;
 use sensitol::compare::{Comparison, Errors, Figures, NotRun, RESOLVED, Ran};
 use sensitol::simulation::SimulatedCharacteristic;
-#[cfg(feature = "schema")]
-use sensitol::simulation::SimulatedShape;
 use sensitol::summary::RunSummary;
 use sensitol_numeric::verdict::Verdict;
 
@@ -47,7 +43,6 @@ pub(crate) struct ComparedReport {
     /// Name of the characteristic.
     pub(crate) name: String,
     /// The reference for all methods.
-    #[cfg_attr(feature = "schema", schemars(with = "SimulatedShape"))]
     pub(crate) reference: SimulatedCharacteristic,
     /// The methods, fewest evaluations first.
     pub(crate) methods: Vec<MethodReport>,
@@ -73,7 +68,6 @@ pub(crate) struct MethodReport {
     #[serde(flatten)]
     pub(crate) figures: Figures,
     /// Difference from the reference.
-    #[cfg_attr(feature = "schema", schemars(with = "ErrorShape"))]
     pub(crate) error_vs_reference: Errors,
     /// True if no other method has a smaller error for as many evaluations or fewer.
     pub(crate) pareto: bool,
@@ -161,7 +155,7 @@ impl ComparedReport {
         section.chart(Chart::Plot(self.plot()));
         section.detail(vec![Element::Table(self.table())]);
         section.brief(vec![Element::Table(self.table().without(&["model s", "engine s"]))]);
-        if self.methods.iter().any(|method| !method.error_vs_reference.resolved()) {
+        if self.methods.iter().any(|method| !method.error_vs_reference.resolved) {
             section.note("<: below two standard errors of the reference");
         }
         section
@@ -206,8 +200,8 @@ impl ComparedReport {
             .column("skewness_off", "skew", off!(skewness, 1.0))
             .column("kurtosis_off", "kurt", off!(kurtosis, 1.0))
             .column("yield_off", "yield %", off!(yield_, 100.0))
-            .data("overall", |method| Cell::data(method.error_vs_reference.overall()))
-            .data("resolved", |method| Cell::both(Value::Truth(Some(method.error_vs_reference.resolved())), ""))
+            .data("overall", |method| Cell::data(method.error_vs_reference.overall))
+            .data("resolved", |method| Cell::both(Value::Truth(Some(method.error_vs_reference.resolved)), ""))
             .named("pareto", "no other beats it", best)
             .table("comparison", &self.methods)
     }
@@ -217,13 +211,13 @@ impl ComparedReport {
     fn plot(&self) -> Plot {
         let floor = self.methods.first().map_or(0.0, |method| method.error_vs_reference.floor());
         let point = |method: &MethodReport| {
-            let error = method.error_vs_reference.overall()?.max(floor);
+            let error = method.error_vs_reference.overall?.max(floor);
             (error > 0.0 && method.evaluations > 0).then(|| PlotPoint {
                 at: [method.evaluations as f64, error],
                 name: method.method.clone(),
                 tip: String::new(),
                 strong: method.pareto,
-                filled: method.error_vs_reference.resolved(),
+                filled: method.error_vs_reference.resolved,
             })
         };
         let points: Vec<PlotPoint> = self.methods.iter().filter_map(point).collect();

@@ -17,7 +17,6 @@ use crate::{About, DimensionReport, Head, WarningReport, correlation};
 use sensitol::problem::Problem;
 use sensitol::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents, Unmet};
 use sensitol_numeric::correlation::Pair;
-use sensitol_numeric::sampling::Estimate;
 
 /// The report of rare events, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]
@@ -114,7 +113,7 @@ impl RareSection for RareCharacteristic {
         section.detail(vec![Element::Table(self.table(&sides))]);
         section.brief(vec![Element::Table(self.table(&sides).without(&["plain sampling"]))]);
         for (side, of) in &sides {
-            if let Some([low, high]) = self.bounds(of) {
+            if let Some([low, high]) = of.bounds {
                 let ([low, high], failed) = ([low, high].map(ppm), self.failed);
                 let all = format!("{high} if all {failed} do");
                 section.note(format!("{side}: {low} ppm if no point without a value lies there, {all}"));
@@ -147,11 +146,11 @@ impl RareSection for RareCharacteristic {
             .shown("", limit)
             .data("limit", |row| Cell::data(row.1.limit))
             .column("probability", "ppm", |row| {
-                let value = row.1.probability.map(|found: Estimate| found.value);
+                let value = row.1.probability;
                 Cell::both(Value::Number(value), value.map_or(UNKNOWN.to_owned(), |_| rejects(row.1, 4)))
             })
             .column("standard_error", "standard error", |row| {
-                let error = row.1.probability.and_then(|found| found.standard_error);
+                let error = row.1.standard_error;
                 Cell::number(error, |error| significant(1e6 * error, 2))
             })
             .column("interval_low", "95 % interval", |row| Cell::number(row.1.interval[0], ppm))

@@ -2,14 +2,13 @@
 
 use crate::document::number::{known, significant, within, yielded};
 use sensitol::rare::{Beyond, RareCharacteristic};
-use sensitol_numeric::sampling::Estimate;
 
 /// Formats the rejects on one side in ppm, with no digit below the bound of unseen rejects. If there is no estimate, or the bound is
 /// greater, it is the upper end of the interval.
 pub(crate) fn rejects(of: &Beyond, digits: usize) -> String {
     let unmet = of.unmet.map(|unmet| unmet.most);
     match of.probability {
-        Some(Estimate { value, .. }) if unmet.is_none_or(|most| most < value) => {
+        Some(value) if unmet.is_none_or(|most| most < value) => {
             within(1e6 * value, digits, unmet.map(|most| 1e6 * most))
         }
         _ => format!("< {}", significant(1e6 * of.interval[1], 2)),

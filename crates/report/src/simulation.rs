@@ -33,6 +33,8 @@ pub struct SimulationReport {
     /// The common head of every report.
     #[serde(flatten)]
     pub(crate) head: Head,
+    /// `monte-carlo` or `quasi-monte-carlo`.
+    pub(crate) method: &'static str,
     /// The results.
     #[serde(flatten, serialize_with = "Simulation::serialize")]
     #[cfg_attr(feature = "schema", schemars(with = "Simulation"))]
@@ -50,6 +52,7 @@ impl SimulationReport {
     pub fn of(problem: &Problem, simulation: &Simulation, about: About) -> Self {
         Self {
             head: Head::of("simulate", &about),
+            method: simulation.sampler.method(),
             simulation: simulation.clone(),
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
             correlation: correlation(problem),
@@ -134,7 +137,7 @@ impl SimulationSection for SimulatedCharacteristic {
         section.table(self.histogram_table());
         if let Some(control) = &self.control {
             let times = |value: Option<f64>, name: &str| value.map(|value| format!("{name} {}", significant(value, 3)));
-            let shrunk = [times(control.mean, "mean"), times(control.sigma, "sigma")];
+            let shrunk = [times(control.reduction.mean, "mean"), times(control.reduction.sigma, "sigma")];
             let shrunk: Vec<String> = shrunk.into_iter().flatten().collect();
             let shrunk = match shrunk.is_empty() {
                 true => String::new(),

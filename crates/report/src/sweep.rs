@@ -123,7 +123,6 @@ pub struct SweptPointReport {
     /// The same in a word.
     pub(crate) verdict: Option<Verdict>,
     /// Everything that is required of it, the target yield included.
-    #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
     pub(crate) requirements: Vec<Judged>,
     /// The rejects with their error, for readers.
     #[serde(skip)]

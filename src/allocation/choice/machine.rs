@@ -59,7 +59,7 @@ fn choose_machines(setting: &Setting<'_>, start: &[f64]) -> Choice {
                 bound = bound.min(below + of(set));
                 nodes += proof.nodes;
                 // Lists with a single offer left are a bound by themselves.
-                rigorous &= proof.rigorous || proof.bound.is_none() && setting.is_convex();
+                rigorous &= proof.bound_is_exact == Some(true) || proof.bound.is_none() && setting.is_convex();
                 solved.cost += of(used(setting, &setups, &offers));
                 if solved.cost < known {
                     best = Some((solved.cost, solved, offers, proof));
@@ -71,7 +71,7 @@ fn choose_machines(setting: &Setting<'_>, start: &[f64]) -> Choice {
     }
     match best {
         Some((cost, solved, offers, proof)) => {
-            let proof = Proof { bound: Some(bound.min(cost)), nodes, rigorous, ..proof };
+            let proof = Proof { bound: Some(bound.min(cost)), nodes, bound_is_exact: Some(rigorous), ..proof };
             Choice::Found { solved, offers, proof }
         }
         None => choose_alone(setting, start),

@@ -134,7 +134,7 @@ impl<'s, 'a> Judge<'s, 'a> {
     fn found(&self, offers: Vec<usize>, lost: f64, bound: Option<f64>, nodes: usize) -> Choice {
         let at = self.at(&offers);
         let cost = self.held(&offers) + lost;
-        let rigorous = bound.is_some() && self.is_exact();
+        let bound_is_exact = Some(bound.is_some() && self.is_exact());
         // No choice costs less than the cheapest option of every list.
         let least = |group: &Priced| {
             let of = group.offers.iter().map(|offer| group.parts * offer.curve.cost(offer.min));
@@ -158,7 +158,7 @@ impl<'s, 'a> Judge<'s, 'a> {
             proof: Proof {
                 solver: Some(AllocationSolver::BranchAndBound),
                 bound: Some(bound),
-                rigorous,
+                bound_is_exact,
                 nodes,
                 ..Proof::default()
             },

@@ -78,7 +78,8 @@ fn choose_listed(setting: &Setting<'_>, start: &[f64]) -> Option<ChosenOffers> {
         let residual = curved.then_some(solved.residual);
         let bound = bound.is_finite().then_some(bound);
         let solver = Some(AllocationSolver::BranchAndBound);
-        let proof = Proof { solver, residual, bound, rigorous, nodes, ..Proof::default() };
+        let bound_is_exact = bound.map(|_| rigorous);
+        let proof = Proof { solver, residual, bound, bound_is_exact, nodes, ..Proof::default() };
         (solved, offers, proof)
     })
 }

@@ -60,7 +60,7 @@ impl RequirementForm for RequiredYield {
 
     fn uncertainty(&self, _: Requirement, found: &CharacteristicAnalysis) -> f64 {
         // The yield that judges trial tolerances is that of the surface distribution, or of the Pearson fit.
-        let law = found.evidence.surface_law.as_ref().filter(|_| is_judged_by_law(found)).and_then(|law| law.yield_());
+        let law = found.evidence.surface_law.as_ref().filter(|_| is_judged_by_law(found)).and_then(|law| law.yield_);
         let judged = law.or_else(|| found.evidence.pearson?.yield_());
         judged.zip(found.yield_interval()).map_or(0.0, |(value, [low, _])| value - low)
     }

@@ -1,6 +1,6 @@
 //! Results of an allocation.
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::allocation::cost::default_costs::CostBasis;
 use crate::allocation::cost::setup_cost::SetUp;
@@ -17,7 +17,7 @@ use crate::simulation::Simulation;
 use crate::summary::RunSummary;
 use crate::warning::Warning;
 use sensitol_numeric::json_form::through;
-use sensitol_numeric::requirement::{Required, Requirement};
+use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::verdict::Judged;
 
 /// Outcome of an allocation.
@@ -130,8 +130,7 @@ pub struct Kept {
     #[serde(skip)]
     pub characteristic: usize,
     /// Requirement.
-    #[serde(flatten, serialize_with = "through::<Required, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "Required"))]
+    #[serde(flatten)]
     pub requirement: Requirement,
     /// Value by the analysis at the tolerances before.
     #[serde(flatten, serialize_with = "through::<Before, _, _>")]
@@ -154,8 +153,7 @@ pub struct Kept {
 #[non_exhaustive]
 pub struct JointKept {
     /// Requirement.
-    #[serde(flatten, serialize_with = "through::<Required, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "Required"))]
+    #[serde(flatten)]
     pub requirement: Requirement,
     /// Value by the analysis at the tolerances before.
     #[serde(flatten, serialize_with = "through::<Before, _, _>")]
@@ -209,8 +207,7 @@ pub struct Attainable {
     /// Unit of the characteristic.
     pub unit: Option<String>,
     /// Requirement.
-    #[serde(flatten, serialize_with = "through::<Required, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "Required"))]
+    #[serde(flatten)]
     pub requirement: Requirement,
     /// Best value within the bounds of the tolerances, in the measure of the requirement.
     pub best: Option<f64>,
@@ -250,7 +247,6 @@ pub enum AllocationSolver {
 /// Evidence that nothing is cheaper.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Proof {
     /// Solver that found the tolerances. None if none were found.
@@ -260,9 +256,8 @@ pub struct Proof {
     pub residual: Option<f64>,
     /// Lower bound of the cost of every choice of processes. None if there are no lists, and if no bound is known.
     pub bound: Option<f64>,
-    /// True if the bound is exact, false if it rests on a sample of choices.
-    #[serde(skip)]
-    pub rigorous: bool,
+    /// True if the bound is exact, false if it rests on a sample of choices. None if there is no bound.
+    pub bound_is_exact: Option<bool>,
     /// Number of nodes of the branch and bound.
     pub nodes: usize,
     /// True if Lagrange's condition gave the result in closed form.
@@ -274,7 +269,6 @@ pub struct Proof {
     /// Cost of the next cheapest optimum among them. None if there was no other.
     pub other_optimum: Option<f64>,
     /// Greatest possible excess of the cost over the bound, as a part of the cost. None if there is no bound.
-    #[serde(skip)]
     pub gap: Option<f64>,
 }
 
@@ -363,23 +357,4 @@ pub struct FrontPoint {
     pub cost: Option<f64>,
     /// Half bands, in the order of [`Allocation::tolerances`].
     pub tolerances: Option<Vec<f64>>,
-}
-
-/// Proof with the kind of its bound, as it is written.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ProofShape<'r> {
-    #[serde(flatten, serialize_with = "Proof::serialize")]
-    #[cfg_attr(feature = "schema", schemars(with = "Proof"))]
-    own: &'r Proof,
-    /// True if the bound is exact, false if it rests on a sample of choices; null without a bound.
-    bound_is_exact: Option<bool>,
-    /// Greatest possible excess of the cost over the bound, as a part of the cost.
-    gap: Option<f64>,
-}
-
-impl Serialize for Proof {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        ProofShape { own: self, bound_is_exact: self.bound.map(|_| self.rigorous), gap: self.gap }.serialize(serializer)
-    }
 }

@@ -142,7 +142,8 @@ impl Driver<'_> {
         let proven = self.has_true_slopes(&end.station, &end.constraints)
             && proof.residual.is_none_or(|residual| residual <= OPTIMAL)
             && proof.bound.is_none_or(|bound| {
-                proof.rigorous && solved.cost - bound <= NO_GAP * solved.cost.abs().max(f64::MIN_POSITIVE)
+                proof.bound_is_exact == Some(true)
+                    && solved.cost - bound <= NO_GAP * solved.cost.abs().max(f64::MIN_POSITIVE)
             });
         let at_rest = end.ended.at_rest.is_none_or(|residual| residual <= OPTIMAL);
         let recentred = !self.options.recentre.is_empty();
@@ -221,7 +222,7 @@ impl Driver<'_> {
         let bilinear = recentred && constraints.iter().any(|one| one.form().basis() == Basis::Distribution);
         free && loosest
             || free && setting.is_convex() && !bilinear
-            || !free && proof.rigorous && !recentred && setting.costs_are_convex()
+            || !free && proof.bound_is_exact == Some(true) && !recentred && setting.costs_are_convex()
     }
 
     /// Evaluates the model by Monte Carlo at the tolerances found, with as many points as the budget leaves.

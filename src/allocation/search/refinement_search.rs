@@ -140,7 +140,8 @@ impl<'s> RefinementSearch<'s> {
             let bound = is_bounded.then_some(self.left_out.min(objective));
             let gap = bound.map(|bound| ((objective - bound) / objective.abs().max(f64::MIN_POSITIVE)).max(0.0));
             let nodes = last.proof.nodes + self.nodes;
-            last.proof = Proof { bound, gap, rigorous: bound.is_some(), nodes, ..last.proof };
+            let bound_is_exact = bound.map(|_| true);
+            last.proof = Proof { bound, gap, bound_is_exact, nodes, ..last.proof };
         }
         last.cost_before = found.cost_before;
         for row in &mut last.tolerances {

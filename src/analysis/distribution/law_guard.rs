@@ -8,7 +8,7 @@
 //! Agreement is within six standard errors of the count and the errors of the distribution. A distribution that fails is not reported:
 //! points of the surface replace it.
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::analysis::result::verification::{Verification, VerificationKind};
 use crate::estimate::OrderedPoints;
@@ -22,7 +22,9 @@ const ERRORS: f64 = 6.0;
 const FEW: f64 = 8.0;
 
 /// Failed test of a surface distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum LawTest {
     /// Quantiles and shares rise with the limit.
@@ -32,7 +34,7 @@ pub enum LawTest {
 }
 
 impl LawTest {
-    /// Returns the name of the test in JSON.
+    /// Returns the name of the test in warnings.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Monotone => "monotone",
@@ -42,7 +44,8 @@ impl LawTest {
 }
 
 /// Contradiction that refutes the distribution of a surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct LawRefutation {
     /// Failed test.
@@ -161,7 +164,7 @@ pub(in crate::analysis) fn by_sample(
     let [_, differences @ ..] = verification.difference?;
     let places = [(LawTail::Lower, limits.lower()), (LawTail::Upper, limits.upper())];
     (0..2).find_map(|side| {
-        let ((tail, limit), own, difference) = (places[side], verification.beyond[side]?, differences[side]);
+        let ((tail, limit), own, difference) = (places[side], verification.figures.beyond[side]?, differences[side]);
         let (limit, share) = (limit?, shares[side]?);
         let (counted, error) = (own.value - difference.value, own.error + difference.error);
         let below = |share: f64| if tail == LawTail::Lower { share } else { 1.0 - share };
@@ -169,29 +172,6 @@ pub(in crate::analysis) fn by_sample(
             LawRefutation { test: LawTest::Count, limit, law: below(share.value), counted: below(counted), error };
         ((share.value - counted).abs() > ERRORS * error + share.error).then_some(refutation)
     })
-}
-
-/// A refutation in JSON.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub(in crate::analysis) struct LawRefutationShape {
-    /// `monotone` (quantiles or shares fall) or `count` (points contradict a share).
-    test: &'static str,
-    /// Limit at which the distribution failed.
-    limit: f64,
-    /// Share of assemblies below the limit by the distribution.
-    law: f64,
-    /// Share of points below the limit.
-    counted: f64,
-    /// Standard error of that share.
-    error: f64,
-}
-
-impl Serialize for LawRefutation {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Self { test, limit, law, counted, error } = *self;
-        LawRefutationShape { test: test.name(), limit, law, counted, error }.serialize(serializer)
-    }
 }
 
 #[cfg(test)]

@@ -55,7 +55,7 @@ impl<'a> QuantileSelection<'a> {
         };
         let verification = one.evidence.verification.as_ref();
         let sampled = verification.filter(|of| of.kind == VerificationKind::Sample);
-        let proven = verification.is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+        let proven = verification.is_some_and(|of| of.kind == VerificationKind::Exact);
         let computed = law.is_some_and(|law| law.shares.branch != Branch::Sampled);
         let source = match (fit, &one.evidence.model_sampled, sampled, law, pearson) {
             (Some(Law::Point { at }), ..) => QuantileSource::Constant(*at),

@@ -51,27 +51,43 @@ const PLACES: usize = 240;
 const FEW_PLACES: usize = 96;
 
 /// Shares of a characteristic by the distribution of its surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SurfaceShares {
-    /// Kind of computation of the distribution.
+    /// Kind of computation of the distribution: `exact`, `single` or `sampled`.
     pub branch: Branch,
     /// Number of surface points that were counted because the distribution could not be computed or is refuted. None if it was computed.
+    #[serde(rename = "counted_points")]
     pub counted: Option<usize>,
     /// Contradiction because of which points replace the distribution. None if there is none.
     pub refuted: Option<LawRefutation>,
     /// True if the distribution is a step function: every input with an effect has measured values only.
+    #[serde(rename = "step_function")]
     pub steps: bool,
+    /// Share within the limits. None if there are no limits.
+    #[serde(rename = "yield")]
+    pub yield_: Option<f64>,
     /// Share below the lower limit. None if there is no such limit.
+    #[serde(rename = "ppm_below", serialize_with = "ppm")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub below: Option<LawFigure>,
     /// Share above the upper limit. None if there is no such limit.
+    #[serde(rename = "ppm_above", serialize_with = "ppm")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
     pub above: Option<LawFigure>,
+    /// Numerical error of the share within the limits: of the distribution of this surface, not of the surface.
+    pub yield_error: Option<f64>,
     /// Quantiles at the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES). None if one of them is unknown: those of the
     /// Pearson fit are reported then.
+    #[serde(serialize_with = "quantile_values")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<Quantiles>"))]
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
-rescale!(SurfaceShares { refuted, quantiles } without { branch, counted, steps, below, above });
+rescale!(SurfaceShares { refuted, quantiles } without {
+    branch, counted, steps, yield_, below, above, yield_error,
+});
 
 /// Distribution of a characteristic's surface that has passed its tests, or points of the surface in its place. It is the only source of
 /// shares, quantiles, intervals and density.
@@ -105,7 +121,7 @@ impl GuardedLaw {
             return None;
         }
         // A surface that is proven to equal the function leaves only rounding unexplained.
-        let exact = request.verification.is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+        let exact = request.verification.is_some_and(|of| of.kind == VerificationKind::Exact);
         let beside = request.verification.is_some_and(|of| of.kind == VerificationKind::Sample);
         let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
         let unexplained = unexplained.filter(|_| !exact && !beside);
@@ -127,7 +143,8 @@ impl GuardedLaw {
         }
         let quantiles = quantiles(&whole, request.fit);
         let (branch, steps) = (whole.branch(), whole.is_step_function());
-        let shares = SurfaceShares { branch, counted: None, refuted: None, steps, below, above, quantiles };
+        let shares = SurfaceShares::of(branch, [below, above], quantiles);
+        let shares = SurfaceShares { steps, ..shares };
         // A list of all values with their probabilities is a count itself.
         let refuted = if steps { None } else { shares.refutation(request, limits, unexplained) };
         match refuted {
@@ -141,15 +158,13 @@ impl GuardedLaw {
         let LawRequest { problem, outcome, c, seed, .. } = request;
         let points = counted::points(problem, outcome, (c, seed), (counted::POINTS, None))?;
         let (limits, [low, high]) = (problem.characteristics()[c].limits(), problem.kept_limits(c).ends());
-        let shares = SurfaceShares {
-            branch: Branch::Sampled,
-            counted: Some(points.len()),
-            refuted,
-            steps: false,
-            below: limits.lower().map(|_| points.estimate_beyond(LawTail::Lower, low)),
-            above: limits.upper().map(|_| points.estimate_beyond(LawTail::Upper, high)),
-            quantiles: Some(REPORTED_QUANTILES.map(|(tail, p)| points.quantile(tail, p))),
-        };
+        let beyond = [
+            limits.lower().map(|_| points.estimate_beyond(LawTail::Lower, low)),
+            limits.upper().map(|_| points.estimate_beyond(LawTail::Upper, high)),
+        ];
+        let quantiles = REPORTED_QUANTILES.map(|(tail, p)| points.quantile(tail, p));
+        let shares = SurfaceShares::of(Branch::Sampled, beyond, Some(quantiles));
+        let shares = SurfaceShares { counted: Some(points.len()), refuted, ..shares };
         Some(Self { shares, law: None, points: Some(points) })
     }
 
@@ -183,7 +198,26 @@ impl GuardedLaw {
     }
 }
 
+/// Serializes a share in parts per million.
+fn ppm<S: Serializer>(share: &Option<LawFigure>, serializer: S) -> Result<S::Ok, S::Error> {
+    share.map(|figure| 1e6 * figure.value).serialize(serializer)
+}
+
+/// Serializes the values of quantiles by the names of their probabilities.
+fn quantile_values<S: Serializer>(all: &Option<[LawFigure; 7]>, serializer: S) -> Result<S::Ok, S::Error> {
+    all.map(|all| Quantiles(all.map(|figure| figure.value))).serialize(serializer)
+}
+
 impl SurfaceShares {
+    /// Shares of a computed distribution, with the yield and its error by the shares beyond the limits.
+    fn of(branch: Branch, [below, above]: [Option<LawFigure>; 2], quantiles: Option<[LawFigure; 7]>) -> Self {
+        let (counted, refuted, steps) = (None, None, false);
+        let (yield_, yield_error) = (None, None);
+        let shares = Self { branch, counted, refuted, steps, yield_, below, above, yield_error, quantiles };
+        let yield_ = shares.rejected().map(|rejected| 1.0 - rejected);
+        Self { yield_, yield_error: yield_.map(|_| shares.error()), ..shares }
+    }
+
     /// Tests shares and quantiles by points of the surface and by the sample of the model. `unexplained` is the variance that the
     /// distribution adds to the surface.
     fn refutation(
@@ -217,11 +251,6 @@ impl SurfaceShares {
     pub(crate) fn rejected(&self) -> Option<f64> {
         let beyond = [self.below, self.above];
         beyond.iter().any(Option::is_some).then(|| beyond.iter().flatten().map(|figure| figure.value).sum::<f64>())
-    }
-
-    /// Share of assemblies within the limits. Returns None if there are no limits.
-    pub fn yield_(&self) -> Option<f64> {
-        self.rejected().map(|rejected| 1.0 - rejected)
     }
 }
 
@@ -390,55 +419,4 @@ fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sou
         Sought { tail, p, near: near.unwrap_or(f64::NAN), density }
     };
     of.iter().map(one).collect()
-}
-
-/// Results of the surface distribution, in JSON.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub(in crate::analysis) struct SurfaceLawShape {
-    /// Kind of computation of the distribution: `exact`, `single` or `sampled`.
-    branch: &'static str,
-    /// Number of surface points that were counted because the distribution could not be computed or is refuted; null if it was computed.
-    counted_points: Option<usize>,
-    /// Contradiction because of which points replace the distribution; null without one.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(with = "Option<crate::analysis::distribution::law_guard::LawRefutationShape>")
-    )]
-    refuted: Option<LawRefutation>,
-    /// True if the distribution is a step function, because every input with an effect has measured values only.
-    step_function: bool,
-    /// Share within the limits; null without limits.
-    #[serde(rename = "yield")]
-    yield_: Option<f64>,
-    /// Assemblies below the lower limit, per million.
-    ppm_below: Option<f64>,
-    /// Assemblies above the upper limit, per million.
-    ppm_above: Option<f64>,
-    /// Numerical error of the share within the limits: of the distribution of this surface, not of the surface.
-    yield_error: Option<f64>,
-    /// Quantiles; null if one of them is unknown.
-    quantiles: Option<Quantiles>,
-}
-
-impl Serialize for SurfaceShares {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let ppm = |figure: Option<LawFigure>| figure.map(|figure| 1e6 * figure.value);
-        let shape = SurfaceLawShape {
-            branch: match self.branch {
-                Branch::Exact => "exact",
-                Branch::Single => "single",
-                Branch::Sampled => "sampled",
-            },
-            counted_points: self.counted,
-            refuted: self.refuted,
-            step_function: self.steps,
-            yield_: self.yield_(),
-            ppm_below: ppm(self.below),
-            ppm_above: ppm(self.above),
-            yield_error: self.yield_().map(|_| self.error()),
-            quantiles: self.quantiles.map(|all| Quantiles(all.map(|figure| figure.value))),
-        };
-        shape.serialize(serializer)
-    }
 }

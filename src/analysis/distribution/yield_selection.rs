@@ -234,8 +234,7 @@ pub(in crate::analysis) fn joint_of(
     for &c in limited {
         let one = &characteristics[c];
         rejects.push(one.distribution.capability?.rejected()?);
-        let exact =
-            one.evidence.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+        let exact = one.evidence.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Exact);
         square += match one.distribution.yield_source? {
             // Limits outside of the proven range have no error. The same holds for an exact surface of measured inputs.
             YieldSource::Proof => one.error_estimate.as_ref().and_then(|of| of.yield_).unwrap_or(0.0),
@@ -364,7 +363,7 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
     if !measured && limits.exist() && kept_by_extremes(problem, outcome, c, one) == [true; 2] {
         return Some(exactly([limits.lower().map(|_| 0.0), limits.upper().map(|_| 0.0)]));
     }
-    let exact = one.evidence.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+    let exact = one.evidence.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Exact);
     let law = one.evidence.surface_law.as_ref().filter(|law| exact && law.branch != Branch::Sampled)?;
     let beyond = [law.below, law.above];
     let outside = beyond.iter().flatten().all(|figure| figure.proven);
@@ -436,7 +435,7 @@ fn proven_sides(
 fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
     let source = YieldSource::Samples;
     if let Some(sampled) = &one.evidence.model_sampled {
-        let (value, interval) = sampled.yield_?;
+        let (value, interval) = sampled.yield_.zip(sampled.yield_interval)?;
         let error = |side: usize| Some(one_error(sampled.beyond[side]?, sampled.intervals[side]?));
         let (error, errors) = (Some(one_error(value, interval)), [error(0), error(1)]);
         return Some(Rejected { source, beyond: sampled.beyond, error, errors, intervals: sampled.intervals });
@@ -447,14 +446,14 @@ fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
         return Some(Rejected { source, beyond: tail.beyond, error, errors, intervals: tail.intervals });
     }
     let verification = one.evidence.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample)?;
-    let (own, point) = (verification.yield_?, verification.point);
+    let (own, point) = (verification.figures.yield_?, verification.point);
     let interval = |share: f64, error: f64| weighted_interval(share, scatter(error, point), point);
     let plain = || Rejected {
         source,
-        beyond: verification.beyond.map(value),
+        beyond: verification.figures.beyond.map(value),
         error: Some(own.error),
-        errors: verification.beyond.map(|of| of.map(|of| of.error)),
-        intervals: verification.beyond.map(|of| of.map(|of| interval(of.value, of.error))),
+        errors: verification.figures.beyond.map(|of| of.map(|of| of.error)),
+        intervals: verification.figures.beyond.map(|of| of.map(|of| interval(of.value, of.error))),
     };
     // Counts of the surface are no control variate: the sample is as accurate.
     let control = one.evidence.surface_law.as_ref().filter(|law| law.counted.is_none());
@@ -493,7 +492,7 @@ fn surface(one: &CharacteristicAnalysis, whole: Option<&SurfaceLaw>) -> Option<R
     let beyond = [law.below, law.above];
     let checked = one.evidence.verification.as_ref().filter(|of| of.kind == VerificationKind::Checks);
     let (surface, sides) = match checked {
-        Some(of) => (of.yield_.map(|of| of.error), of.beyond.map(|of| of.map(|of| of.error))),
+        Some(of) => (of.figures.yield_.map(|of| of.error), of.figures.beyond.map(|of| of.map(|of| of.error))),
         None => {
             let of_fit = one.error_estimate.as_ref().and_then(|of| of.yield_);
             let of_tails = whole.and_then(|whole| error_of_shares(one, whole)).unwrap_or([0.0; 2]);

@@ -8,6 +8,8 @@ use crate::analysis::result::evidence::Evidence;
 use crate::analysis::result::interaction_listing::{dimensions_of, mixed_of, pairs_of, share_of};
 use crate::analysis::result::linear::Linear;
 use crate::analysis::result::range_figures::{LinearFigures, RangeFigures};
+#[cfg(feature = "schema")]
+use crate::analysis::result::serialisation::CharacteristicConclusion;
 use crate::analysis::result::variance_share::Shares;
 use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::{InteractionList, VerificationKind};
@@ -17,12 +19,14 @@ use crate::problem::Problem;
 use crate::verification::Verified;
 use sensitol_numeric::capability::{Capability, EstimatedShare, Law};
 use sensitol_numeric::characteristic::Characteristic;
+#[cfg(feature = "schema")]
+use sensitol_numeric::json_form::Concluded;
 use sensitol_numeric::json_form::{Four, through};
 use sensitol_numeric::moments::Moments;
 use sensitol_numeric::power::{Rescale, Rescaling, Wide, rescale};
 use sensitol_numeric::requirement::Requirement;
 use sensitol_numeric::surrogate::DerivativeOrigin;
-use sensitol_numeric::verdict::{self, Judged, Verdict};
+use sensitol_numeric::verdict::{self, Judged, Verdict, Verdicts};
 
 /// Figures of one characteristic, with their evidence. Unknown values are None.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -31,6 +35,7 @@ use sensitol_numeric::verdict::{self, Judged, Verdict};
 pub struct CharacteristicAnalysis {
     /// Characteristic, with its limits.
     #[serde(flatten)]
+    #[cfg_attr(feature = "schema", schemars(with = "Concluded<Characteristic, CharacteristicConclusion<'static>>"))]
     pub characteristic: Characteristic,
     /// Value at the nominal dimensions.
     pub nominal: Option<f64>,
@@ -179,8 +184,7 @@ impl CharacteristicAnalysis {
 
     /// True if the formula's own degree proves that it is linear: the slopes are exact everywhere.
     pub fn is_proven_linear(&self) -> bool {
-        let kind = self.evidence.verification.as_ref().map(|of| of.kind);
-        matches!(kind, Some(VerificationKind::Exact { degree: 0 | 1 }))
+        self.evidence.verification.as_ref().and_then(|of| of.degree).is_some_and(|degree| degree <= 1)
     }
 
     /// Coefficient of variation, `sigma / |mean|`, with its error from those of mean and sigma. Returns None if one of them is unknown, and
@@ -193,14 +197,19 @@ impl CharacteristicAnalysis {
         (mean > 3.0 * of_mean).then(|| Verified { value, error: libm::hypot(of_sigma, value * of_mean) / mean })
     }
 
+    /// Verdicts on the characteristic.
+    pub(super) fn verdicts(&self) -> Verdicts {
+        Verdicts::by(&self.characteristic, |requirement| self.judge(requirement))
+    }
+
     /// Verdicts on all requirements of the characteristic, its target yield included.
     pub fn requirements(&self) -> Vec<Judged> {
-        verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
+        self.verdicts().requirements
     }
 
     /// Verdict on the target yield. Returns None if there is no target.
     pub fn verdict(&self) -> Option<Verdict> {
-        verdict::on_target_yield(&self.characteristic, |target| self.judge(target))
+        self.verdicts().verdict
     }
 
     /// True if the target yield is met. Returns None if there is no target, and if it is unknown.

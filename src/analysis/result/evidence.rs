@@ -27,16 +27,8 @@ pub struct Evidence {
     #[serde(rename = "tail_sampling")]
     pub tail_sampled: Option<SampledTail>,
     /// Verification of these results by the model itself. None if they were not verified.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(with = "Option<crate::analysis::result::verification::VerificationShape>")
-    )]
     pub verification: Option<Verification>,
     /// Results of the surface distribution. None if the moments follow from no surface.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(with = "Option<crate::analysis::distribution::surface_law::SurfaceLawShape>")
-    )]
     pub surface_law: Option<SurfaceShares>,
     /// Density of the surface distribution as `[y, density, error]`, for drawing. None unless [requested](crate::Options::densities), and
     /// if the distribution has none.

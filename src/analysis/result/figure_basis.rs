@@ -72,15 +72,14 @@ impl CharacteristicAnalysis {
         Some(match self.evidence.verification.as_ref().map(|of| of.kind) {
             _ if self.constant => FigureBasis::Proof,
             _ if self.evidence.model_sampled.is_some() => FigureBasis::Points,
-            Some(VerificationKind::Exact { .. }) if self.evidence.sampling.is_none() => FigureBasis::Proof,
-            Some(VerificationKind::Exact { .. } | VerificationKind::Sample) => FigureBasis::Points,
+            Some(VerificationKind::Exact) if self.evidence.sampling.is_none() => FigureBasis::Proof,
+            Some(VerificationKind::Exact | VerificationKind::Sample) => FigureBasis::Points,
             Some(VerificationKind::Checks) | None => FigureBasis::Surface,
         })
     }
 
     fn basis_of_source(&self, source: YieldSource) -> FigureBasis {
-        let proven =
-            self.evidence.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+        let proven = self.evidence.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Exact);
         match source {
             YieldSource::Proof => FigureBasis::Proof,
             YieldSource::Samples => FigureBasis::Points,

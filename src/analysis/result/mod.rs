@@ -9,7 +9,6 @@ pub(in crate::analysis) mod figure_basis;
 pub(in crate::analysis) mod interaction;
 pub(in crate::analysis) mod interaction_listing;
 pub(in crate::analysis) mod interaction_remainder;
-pub(in crate::analysis) mod json;
 pub(in crate::analysis) mod judged_figures;
 pub(in crate::analysis) mod linear;
 pub(in crate::analysis) mod points_to_decide;

@@ -25,10 +25,11 @@ pub struct SampledModel {
     #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "Four<Option<f64>>"))]
     pub standard_errors: [Option<f64>; 4],
-    /// Share of the sample within the limits with its 95 % interval.
-    #[serde(flatten, serialize_with = "through::<YieldShape, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "YieldShape"))]
-    pub yield_: Option<(f64, [f64; 2])>,
+    /// Share of the sample within the limits. None if there are no limits.
+    #[serde(rename = "yield")]
+    pub yield_: Option<f64>,
+    /// 95 % interval of the yield.
+    pub yield_interval: Option<[f64; 2]>,
     /// Shares of the sample below the lower and above the upper limit. None if that limit does not exist.
     pub beyond: [Option<f64>; 2],
     /// 95 % intervals of `beyond`.
@@ -55,21 +56,3 @@ impl Rescale for SampledModel {
 }
 
 impl Losable for SampledModel {}
-
-/// A share and its interval, in JSON.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-struct YieldShape {
-    /// Share of the sample within the limits.
-    #[serde(rename = "yield")]
-    yield_: Option<f64>,
-    /// 95 % interval of `yield`.
-    yield_interval: Option<[f64; 2]>,
-}
-
-impl From<&Option<(f64, [f64; 2])>> for YieldShape {
-    fn from(found: &Option<(f64, [f64; 2])>) -> Self {
-        let (yield_, yield_interval) = found.unzip();
-        Self { yield_, yield_interval }
-    }
-}

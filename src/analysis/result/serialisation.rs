@@ -1,4 +1,4 @@
-//! JSON form of an analysis: its fields, and figures that follow from them.
+//! Figures that follow from the results of a characteristic, and the order of both in JSON.
 
 use serde::{Serialize, Serializer};
 
@@ -6,26 +6,20 @@ use crate::analysis::{Analysis, CharacteristicAnalysis, FigureBases};
 use crate::extremes::{Coordinate, Extremes};
 use crate::verification::Verified;
 use crate::warning::serialize::warnings_last;
-use sensitol_numeric::verdict::{Judged, Verdict};
+use sensitol_numeric::serialize_with_conclusion;
+use sensitol_numeric::verdict::Verdicts;
 
 warnings_last!(Analysis);
+serialize_with_conclusion!(CharacteristicAnalysis);
 
-/// A characteristic with its verdicts and intervals, in JSON.
+/// Verdicts, intervals and bases that follow from the figures of a characteristic.
 #[derive(Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct CharacteristicShape<'r> {
-    #[serde(flatten, serialize_with = "CharacteristicAnalysis::serialize")]
-    #[cfg_attr(feature = "schema", schemars(with = "CharacteristicAnalysis"))]
-    own: &'r CharacteristicAnalysis,
+pub struct CharacteristicConclusion<'r> {
     /// Intervals that no assembly leaves.
     worst_case: WorstCase<'r>,
-    /// True if the target yield is met; null if unknown.
-    met: Option<bool>,
-    /// Verdict on the target yield; null without a target.
-    verdict: Option<Verdict>,
-    /// Verdicts on all requirements, the target yield included.
-    #[cfg_attr(feature = "schema", schemars(with = "Vec<sensitol_numeric::verdict::JudgedShape>"))]
-    requirements: Vec<Judged>,
+    #[serde(flatten)]
+    verdicts: Verdicts,
     /// Bases of the figures: `proof`, `points` of the model, or the `surface`.
     basis: FigureBases,
     /// Plain points of the model that would decide the target yield; null unless the verdict comes from an unrefuted surface.
@@ -36,20 +30,17 @@ pub struct CharacteristicShape<'r> {
     coefficient_of_variation: Option<Verified>,
 }
 
-impl Serialize for CharacteristicAnalysis {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let shape = CharacteristicShape {
-            own: self,
+impl CharacteristicAnalysis {
+    /// Verdicts, intervals and bases that follow from the figures.
+    pub fn conclusion(&self) -> CharacteristicConclusion<'_> {
+        CharacteristicConclusion {
             worst_case: WorstCase::of(self),
-            met: self.met(),
-            verdict: self.verdict(),
-            requirements: self.requirements(),
+            verdicts: self.verdicts(),
             basis: self.bases(),
             points_to_decide: self.points_to_decide(),
             yield_interval: self.yield_interval(),
             coefficient_of_variation: self.coefficient_of_variation(),
-        };
-        shape.serialize(serializer)
+        }
     }
 }
 

@@ -2,25 +2,24 @@
 
 use std::sync::Arc;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::verification::{FarResidual, FoundSwitch, SampleQuantile, SampleTails, Share, Verified, WeightedSample};
 use sensitol_numeric::json_form::{Four, Sides, through};
 use sensitol_numeric::power::{Losable, Rescale, Rescaling};
 
 /// Kind of the verification of figures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum VerificationKind {
     /// Points of a cheap model.
     Sample,
     /// Check points of a costly model.
     Checks,
-    /// Proof by the formula itself, a polynomial of this degree that the surface represents exactly.
-    Exact {
-        /// Degree of the polynomial.
-        degree: u32,
-    },
+    /// Proof by the formula itself, a polynomial that the surface represents exactly.
+    Exact,
 }
 
 /// Greatest unexplained share of the variance of a trusted surface. Above it the surface is no basis for tails or for an optimum.
@@ -31,13 +30,12 @@ pub(in crate::analysis) const UNTRUSTED: f64 = 0.05;
 /// Results of the model itself for a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Verification {
     /// Kind of the verification.
-    #[serde(flatten, serialize_with = "through::<KindShape, _, _>")]
-    #[cfg_attr(feature = "schema", schemars(with = "KindShape"))]
     pub kind: VerificationKind,
+    /// Degree of the polynomial that the formula is. None for other kinds.
+    pub degree: Option<u32>,
     /// Evaluated points of the model.
     pub points: usize,
     /// Check points without a value. A sample has `valid` instead.
@@ -53,15 +51,8 @@ pub struct Verification {
     pub valid: Option<Verified>,
     /// Share of the variance that the surface leaves unexplained.
     pub left: Option<f64>,
-    /// Mean, sigma, skewness and kurtosis by the model. None if there is no sample of it.
-    #[serde(skip)]
-    pub figures: [Option<Verified>; 4],
-    /// Share within the limits: by the model, or by the surface with the error from check points.
-    #[serde(skip)]
-    pub yield_: Option<Verified>,
-    /// Shares beyond the lower and the upper limit.
-    #[serde(skip)]
-    pub beyond: [Option<Verified>; 2],
+    /// Figures of the model itself.
+    pub figures: VerifiedFigures,
     /// Weight of one point of a sample.
     #[serde(skip)]
     pub(crate) point: f64,
@@ -86,6 +77,23 @@ pub struct Verification {
     pub(crate) sample: Option<Arc<WeightedSample>>,
 }
 
+/// Figures of a verification.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct VerifiedFigures {
+    /// Mean, sigma, skewness and kurtosis by the model. None if there is no sample of it.
+    #[serde(flatten, serialize_with = "through::<Four<Option<Verified>>, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "Four<Option<Verified>>"))]
+    pub moments: [Option<Verified>; 4],
+    /// Share within the limits: by the sample, or by the surface with the error from check points.
+    #[serde(rename = "yield")]
+    pub yield_: Option<Verified>,
+    /// Shares beyond the lower and the upper limit.
+    #[serde(flatten, serialize_with = "through::<Sides<Option<Verified>>, _, _>")]
+    #[cfg_attr(feature = "schema", schemars(with = "Sides<Option<Verified>>"))]
+    pub beyond: [Option<Verified>; 2],
+}
+
 /// Part of the variance that a dimension explains, by the model itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -101,7 +109,7 @@ pub struct VarianceShare {
 
 impl Rescale for Verification {
     fn rescale(&mut self, by: &mut Rescaling) {
-        let [mean, sigma, ..] = &mut self.figures;
+        let [mean, sigma, ..] = &mut self.figures.moments;
         mean.rescale(by);
         sigma.rescale(by);
         self.tails.rescale(by);
@@ -128,60 +136,9 @@ impl Verification {
                 let unseen = 100.0 * self.unseen.unwrap_or(1.0);
                 format!("verified at {} check points; up to {unseen:.0} % of the assemblies unseen", self.points)
             }
-            VerificationKind::Exact { degree } => format!("exact: the formula is a polynomial of degree {degree}"),
+            VerificationKind::Exact => {
+                format!("exact: the formula is a polynomial of degree {}", self.degree.unwrap_or(0))
+            }
         }
-    }
-}
-
-/// Kind of the verification, in JSON.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-struct KindShape {
-    /// `sample`, `checks` or `exact`.
-    kind: &'static str,
-    /// Degree of the polynomial that the formula is; null for other kinds.
-    degree: Option<u32>,
-}
-
-impl From<&VerificationKind> for KindShape {
-    fn from(kind: &VerificationKind) -> Self {
-        let (kind, degree) = match *kind {
-            VerificationKind::Sample => ("sample", None),
-            VerificationKind::Checks => ("checks", None),
-            VerificationKind::Exact { degree } => ("exact", Some(degree)),
-        };
-        Self { kind, degree }
-    }
-}
-
-/// A verification in JSON.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub(in crate::analysis) struct VerificationShape<'r> {
-    #[serde(flatten, serialize_with = "Verification::serialize")]
-    #[cfg_attr(feature = "schema", schemars(with = "Verification"))]
-    own: &'r Verification,
-    /// Figures of the model itself; null without a sample of it.
-    figures: FiguresShape,
-}
-
-/// Figures of a verification.
-#[derive(Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-struct FiguresShape {
-    #[serde(flatten)]
-    moments: Four<Option<Verified>>,
-    /// Share within the limits: by the sample, or by the surface with the error from check points.
-    #[serde(rename = "yield")]
-    yield_: Option<Verified>,
-    #[serde(flatten)]
-    beyond: Sides<Option<Verified>>,
-}
-
-impl Serialize for Verification {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let (moments, beyond) = (Four::from(&self.figures), Sides::from(&self.beyond));
-        let figures = FiguresShape { moments, yield_: self.yield_, beyond };
-        VerificationShape { own: self, figures }.serialize(serializer)
     }
 }

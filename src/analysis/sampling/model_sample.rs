@@ -163,7 +163,7 @@ impl CrossFitFigures {
                 Figure::Skewness => within(skewness.standard_error, wanted),
                 Figure::Kurtosis => within(kurtosis.standard_error, wanted),
                 Figure::Yield => {
-                    let share = self.sampled.yield_;
+                    let share = self.sampled.yield_.zip(self.sampled.yield_interval);
                     share.is_none_or(|(share, interval)| within(Some(one_error(share, interval)), wanted))
                 }
             }
@@ -222,7 +222,8 @@ fn of_simulation(
         error: found.error.as_ref().map(ToString::to_string),
         left: left(one, climbed, c),
         standard_errors,
-        yield_: found.yield_.map(|share| (share.value, share.interval)),
+        yield_: found.yield_.map(|share| share.value),
+        yield_interval: found.yield_.map(|share| share.interval),
         beyond: [found.below, found.above],
         intervals: found.reject_intervals,
         // Quantiles without an error are not resolved.
@@ -255,7 +256,8 @@ fn model_sample_figures(
     let [mean, sigma, skewness, kurtosis] = sampled.standard_errors;
     let estimate = ErrorEstimate { mean, sigma, skewness, kurtosis, yield_: None, sources };
     // Error of the fit of four moments: its distance from the sample's yield, and the error of that yield.
-    let of_fit = moments.capability.and_then(|capability| capability.yield_()).zip(sampled.yield_);
+    let of_fit =
+        moments.capability.and_then(|capability| capability.yield_()).zip(sampled.yield_.zip(sampled.yield_interval));
     let off = of_fit.map(|(fit, (value, interval))| (fit - value).abs() + one_error(value, interval));
     let of_moments = of_yield(&estimate, &moments.moments, limits);
     let yield_ = of_moments.map(|error| error.max(off.unwrap_or(0.0)));

@@ -70,12 +70,13 @@ fn taken(one: &CharacteristicAnalysis, found: &RareCharacteristic, points: u64) 
     let share = |beyond: &Option<Beyond>, of_law: Option<f64>| {
         let beyond = beyond.as_ref()?;
         let [low, high] = beyond.interval;
-        beyond.probability.map(|of| of.value).or(of_law.map(|share| share.clamp(low, high))).or(Some(0.5 * high))
+        beyond.probability.or(of_law.map(|share| share.clamp(low, high))).or(Some(0.5 * high))
     };
     let beyond = [share(&found.below, of_law[0]), share(&found.above, of_law[1])];
     let intervals = [&found.below, &found.above].map(|beyond| beyond.as_ref().map(|beyond| beyond.interval));
     let yield_ = (1.0 - beyond.iter().flatten().sum::<f64>()).clamp(0.0, 1.0);
-    let drawn: f64 = [&found.below, &found.above].into_iter().flatten().map(|of| of.bounds[1] - of.bounds[0]).sum();
+    let sides = [&found.below, &found.above].into_iter().flatten();
+    let drawn: f64 = sides.filter_map(|of| of.bounds).map(|[least, most]| most - least).sum();
     // Points that searched for the tail may fail where none is drawn. More points lie in the tail than assemblies.
     let unmet = if found.failed > 0 { clopper_pearson(0.0, points as f64)[1] } else { 0.0 };
     let lost = drawn.max(unmet).min(1.0);

@@ -8,7 +8,9 @@ use std::sync::Arc;
 
 use crate::analysis::CharacteristicAnalysis;
 use crate::analysis::result::stage_figures::{MomentFigures, VerificationFigures};
-use crate::analysis::result::verification::{TRUSTED, UNTRUSTED, VarianceShare, Verification, VerificationKind};
+use crate::analysis::result::verification::{
+    TRUSTED, UNTRUSTED, VarianceShare, Verification, VerificationKind, VerifiedFigures,
+};
 use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::sampling::accuracy_target::{MORE, PART};
 use crate::analysis::sampling::sample_budget::SampleBudget;
@@ -117,16 +119,15 @@ fn proven(outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Option<V
     };
     let yield_ = of_yield(&estimate, &moments, one.characteristic.limits());
     let verification = Verification {
-        kind: VerificationKind::Exact { degree: proof.degree },
+        kind: VerificationKind::Exact,
+        degree: Some(proof.degree),
         points: 0,
         failed: 0,
         far_residual: None,
         lost_share: None,
         valid: None,
         left: Some(0.0),
-        figures: [None; 4],
-        yield_: None,
-        beyond: [None; 2],
+        figures: VerifiedFigures::default(),
         point: 0.0,
         difference: None,
         switches: Some(Vec::new()),
@@ -201,15 +202,18 @@ fn sample(
     let quantiles = reported_quantiles(&found);
     let verification = Verification {
         kind: VerificationKind::Sample,
+        degree: None,
         points: found.points,
         failed: 0,
         far_residual: None,
         lost_share: None,
         valid: Some(found.valid),
         left: open,
-        figures: [found.mean, found.sigma, found.skewness, found.kurtosis],
-        yield_: found.yield_,
-        beyond: found.beyond,
+        figures: VerifiedFigures {
+            moments: [found.mean, found.sigma, found.skewness, found.kurtosis],
+            yield_: found.yield_,
+            beyond: found.beyond,
+        },
         point: found.point,
         difference: found.difference,
         switches: found.switches.filter(|found| {
@@ -361,15 +365,14 @@ fn of_checks(
     };
     let verification = Verification {
         kind: VerificationKind::Checks,
+        degree: None,
         points: checked.count,
         failed: found.failed,
         far_residual: found.far.clone(),
         lost_share: Some(found.lost),
         valid: None,
         left: found.left,
-        figures: [None; 4],
-        yield_: found.yield_,
-        beyond: found.beyond,
+        figures: VerifiedFigures { moments: [None; 4], yield_: found.yield_, beyond: found.beyond },
         point: 0.0,
         difference: None,
         switches: None,
@@ -424,7 +427,7 @@ pub(in crate::analysis) fn warnings(one: &CharacteristicAnalysis, wanted: Option
     let units = |model: f64| [sigma, sigma, model.abs().max(1.0), model.abs().max(1.0)];
     let names = ["mean", "sigma", "skewness", "kurtosis"];
     for (index, figure) in names.into_iter().enumerate() {
-        let Some((value, model)) = values[index].zip(verification.figures[index]) else { continue };
+        let Some((value, model)) = values[index].zip(verification.figures.moments[index]) else { continue };
         let unit = units(model.value)[index];
         let off = (value - model.value).abs();
         if off > OFF * model.error && off > matters * unit {

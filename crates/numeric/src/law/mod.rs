@@ -49,6 +49,8 @@ pub use quantile::Sought;
 
 use std::sync::{Arc, OnceLock};
 
+use serde::Serialize;
+
 use crate::capability::TAIL;
 use crate::characteristic::{KeptLimits, SpecLimits};
 use crate::correlation::Correlation;
@@ -152,7 +154,9 @@ impl LawTail {
 }
 
 /// Method that computes the distribution of a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
 pub enum Branch {
     /// Transform inverted along a contour. If every input consists of atoms, a list of values.
     Exact,

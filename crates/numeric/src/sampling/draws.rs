@@ -5,6 +5,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use faer::Mat;
+use serde::Serialize;
 
 use crate::correlation::{Block, Correlation, JointLaw};
 use crate::dimension::Dimension;
@@ -17,7 +18,9 @@ use crate::sampling::sobol::{Sobol, mixed, scrambled};
 use crate::sampling::stream::Stream;
 
 /// Method that draws points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
 pub enum Sampler {
     /// Independent random points.
     Random,

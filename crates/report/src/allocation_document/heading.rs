@@ -112,7 +112,7 @@ impl AllocationReport {
     fn gap(&self, page: &mut Vec<Element>) {
         let proof = &self.proof;
         if let Some(gap) = proof.gap {
-            let basis = if proof.rigorous { "" } else { ", as far as a sample of choices tells" };
+            let basis = if proof.bound_is_exact == Some(true) { "" } else { ", as far as a sample of choices tells" };
             let than = match gap <= 1e-9 {
                 true => format!("{basis} ("),
                 false => {

@@ -67,8 +67,7 @@ impl InteractionSections for CharacteristicAnalysis {
             let sum = known.map(|shares| format!("{} %", percent(shares.iter().sum())));
             sum.unwrap_or_else(|| "an unknown part".to_owned())
         };
-        let by_formula =
-            self.evidence.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }));
+        let by_formula = self.evidence.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Exact);
         let known = match (examined, by_formula) {
             _ if self.is_proven_linear() => "none (the formula is linear)".to_owned(),
             (0, _) => format!("none of {possible} examined"),

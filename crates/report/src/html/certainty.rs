@@ -61,7 +61,8 @@ pub(super) fn section(rows: &[Row], titles: [&str; 3], words: &str) -> String {
 pub(super) fn analysed(one: &CharacteristicAnalysis, simulated: Option<&SimulatedCharacteristic>) -> Vec<Row> {
     let estimate = one.error_estimate.as_ref();
     let by_model = one.evidence.verification.as_ref();
-    let figure = |place: usize| by_model.and_then(|found| found.figures[place]).map(|found| (found.value, found.error));
+    let figure =
+        |place: usize| by_model.and_then(|found| found.figures.moments[place]).map(|found| (found.value, found.error));
     let sampled = |of: Option<Estimate>| of.and_then(|of| Some((of.value, of.standard_error?)));
     let model = match simulated {
         Some(of) => [
@@ -72,7 +73,7 @@ pub(super) fn analysed(one: &CharacteristicAnalysis, simulated: Option<&Simulate
             of.yield_.map(|share| (share.value, one_error(share.value, share.interval))),
         ],
         None => {
-            let yield_ = by_model.and_then(|found| found.yield_).map(|found| (found.value, found.error));
+            let yield_ = by_model.and_then(|found| found.figures.yield_).map(|found| (found.value, found.error));
             [figure(0), figure(1), figure(2), figure(3), yield_]
         }
     };
@@ -136,7 +137,7 @@ pub(super) fn simulated(one: &SimulatedCharacteristic) -> Vec<Row> {
 pub(super) fn sought(one: &RareCharacteristic) -> Vec<Row> {
     let side = |(figure, of): (&'static str, Option<&sensitol::rare::Beyond>)| {
         let of = of?;
-        let error = of.probability.and_then(|found| Some((found.value, found.standard_error?)));
+        let error = of.probability.zip(of.standard_error);
         Some(Row {
             characteristic: one.name().to_owned(),
             figure,

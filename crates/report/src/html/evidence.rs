@@ -40,7 +40,7 @@ struct Tail<'l> {
 pub(super) fn tails(one: &CharacteristicAnalysis) -> Option<String> {
     let Some(Law::Pearson(law)) = one.fitted() else { return None };
     let of_surface = one.evidence.surface_law.as_ref();
-    let by_model = one.evidence.verification.as_ref().map_or([None, None], |found| found.beyond);
+    let by_model = one.evidence.verification.as_ref().map_or([None, None], |found| found.figures.beyond);
     let seen = one.evidence.verification.as_ref().and_then(|found| found.tails.as_ref());
     let seen = seen.map_or([&[][..], &[]], |tails| [&tails.below[..], &tails.above[..]]);
     let all = [

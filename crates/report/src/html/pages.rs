@@ -108,9 +108,9 @@ pub fn compare_html(report: &CompareReport) -> String {
     );
     let cheapest = report.characteristics.iter().filter_map(|one| {
         // The methods are sorted by evaluations.
-        let enough = one.methods.iter().find(|method| !method.error_vs_reference.resolved());
+        let enough = one.methods.iter().find(|method| !method.error_vs_reference.resolved);
         let least = |a: &&crate::compare::MethodReport, b: &&crate::compare::MethodReport| {
-            let error = |of: &crate::compare::MethodReport| of.error_vs_reference.overall().unwrap_or(f64::INFINITY);
+            let error = |of: &crate::compare::MethodReport| of.error_vs_reference.overall.unwrap_or(f64::INFINITY);
             error(a).total_cmp(&error(b))
         };
         let (method, word) = match enough {

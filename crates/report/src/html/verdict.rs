@@ -163,10 +163,10 @@ impl<'r> JudgedCharacteristic<'r> {
 
     /// Findings of rare events.
     pub(super) fn rare(place: usize, one: &'r RareCharacteristic) -> Self {
-        let value = |of: &Option<Beyond>| Some(of.as_ref()?.probability?.value);
+        let value = |of: &Option<Beyond>| of.as_ref()?.probability;
         let sides = [("below", &one.below), ("above", &one.above)];
         let is_known =
-            |of: &Beyond| of.probability.is_some_and(|found| of.unmet.is_none_or(|unmet| unmet.most < found.value));
+            |of: &Beyond| of.probability.is_some_and(|value| of.unmet.is_none_or(|unmet| unmet.most < value));
         let known = sides.iter().all(|(_, of)| of.as_ref().is_none_or(is_known));
         let all: f64 = sides.iter().filter_map(|(_, of)| value(of)).sum();
         Self {
