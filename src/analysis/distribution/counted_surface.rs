@@ -10,10 +10,14 @@ use sensitol_numeric::sampling::{Draws, Normals, Portion, SOBOL_DIMENSIONS, Samp
 pub(in crate::analysis) const POINTS: usize = 1 << 16;
 /// Greatest number of points in the test of a distribution: six standard errors of a share of a half are 3 %.
 pub(in crate::analysis) const TESTED: usize = 1 << 13;
-/// Points of the surface that are evaluated together, to limit memory.
+/// Points of the surface whose number is a multiple of this one, and which are evaluated together where inputs are few.
 const ROWS: usize = 1024;
-/// Greatest number of products of points and surface terms in a test: some tenths of a second.
-const EFFORT: usize = 1 << 28;
+/// Greatest count of random numbers that are drawn together by one thread: 2 MB.
+const TOGETHER: usize = 1 << 18;
+/// Fewest points that are evaluated together. With fewer, the time of a block without its points counts.
+const FEWEST_TOGETHER: usize = 32;
+/// Greatest number of products of points and surface terms in a test: some tenths of a second, with their random numbers.
+const EFFORT: usize = 1 << 25;
 /// Random stream of the normal variable that represents the variance which the surface does not explain. It differs from the streams of the
 /// inputs.
 const STREAM: u64 = 1;
@@ -40,14 +44,16 @@ pub(in crate::analysis) fn points(
     let terms = surrogate.parts.len() + surrogate.interactions.each_pair().count();
     // A test uses fewer points if each is a sum of half a million products.
     let affordable = if most < POINTS { (EFFORT / terms.max(1)).max(ROWS) } else { numbers };
-    let blocks = numbers.min(affordable) / ROWS;
-    // In blocks, so that a thousand inputs take no more memory than ten.
+    let count = numbers.min(affordable) / ROWS * ROWS;
+    // In blocks, so that ten thousand inputs take no more memory than ten.
+    let rows = (TOGETHER / varying.len().max(1)).clamp(FEWEST_TOGETHER, ROWS);
     let values = |block: usize| -> Option<Vec<f64>> {
-        let points = draws.points(Portion { replicate: 0, first: (block * ROWS) as u64, rows: ROWS });
+        let first = block * rows;
+        let points = draws.points(Portion { replicate: 0, first: first as u64, rows: rows.min(count - first) });
         let rises = surrogate.rises(&problem.standardised(&points, varying))?;
         Some(rises.iter().map(|rise| surrogate.centre + rise).collect())
     };
-    let mut values = (0..blocks).into_par_iter().map(values).collect::<Option<Vec<_>>>()?.concat();
+    let mut values = (0..count.div_ceil(rows)).into_par_iter().map(values).collect::<Option<Vec<_>>>()?.concat();
     if let Some(variance) = unexplained {
         let beside = Normals::random(1, seed).columns(STREAM, values.len());
         let sigma = variance.sqrt();

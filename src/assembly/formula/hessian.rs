@@ -1,5 +1,7 @@
 //! All mixed derivatives of a formula at once, by one pass for each variable instead of one for each pair.
 
+use std::collections::BTreeSet;
+
 use crate::assembly::formula::functions::{Binary, Unary};
 use crate::assembly::formula::graph::{GraphNode, NodeId};
 use crate::assembly::formula::jet::Jet;
@@ -9,6 +11,9 @@ use sensitol_numeric::parallel::prelude::*;
 
 /// Number of variables whose passes run together.
 const LANES: usize = 8;
+
+/// Number of variables whose second derivatives share one buffer of moves.
+const TOGETHER: usize = 64;
 
 /// Operation that depends on a variable, with its derivatives by its operands.
 struct Local {
@@ -78,6 +83,31 @@ impl FormulaSet {
         let indices = along.iter().flat_map(|&first| &of_first[first]);
         indices.zip(passes.into_iter().flatten()).for_each(|(&index, value)| mixed[index as usize] = value);
         mixed.iter().all(|value| value.is_finite()).then_some(mixed)
+    }
+
+    /// Returns the first and the second derivative of a formula by each of these variables at a point, which has a value for every variable.
+    ///
+    /// One backward pass gives the first derivatives. A second derivative is the sum, over the operations that curve, of the derivative by the
+    /// operation times its second derivative along the moves of its operands (Griewank and Walther 2008, section 5.4, with the terms of
+    /// linear operations left out). Returns None as [`mixed`](Self::mixed) does.
+    ///
+    /// Cost: one pass over the formula, and for each variable the operations between it and the last one that curves.
+    pub(crate) fn pure(&self, formula: usize, at: &[f64], variables: &[usize]) -> Option<Vec<[f64; 2]>> {
+        let tape = self.tape(&[formula], at)?;
+        let adjoints = tape.adjoints(&[1.0])?;
+        let curved = CurvedPaths::of(&tape);
+        let mut places = vec![None; at.len()];
+        tape.variables.iter().for_each(|&(variable, place)| places[variable] = Some(place));
+        let of_variables = |variables: &[usize]| -> Vec<[f64; 2]> {
+            let mut moves = vec![0.0; tape.operations.len()];
+            let derivatives = variables.iter().map(|&variable| match places[variable] {
+                Some(place) => [adjoints[place], curved.second(&tape, &adjoints, place, &mut moves)],
+                None => [0.0; 2],
+            });
+            derivatives.collect()
+        };
+        let found: Vec<[f64; 2]> = variables.par_chunks(TOGETHER).flat_map_iter(of_variables).collect();
+        found.iter().flatten().all(|value| value.is_finite()).then_some(found)
     }
 
     /// Returns the operations of some formulas at a point, with their derivatives. Returns None if a formula has a kink, a jump or the edge
@@ -218,6 +248,47 @@ impl Tape {
     }
 }
 
+/// Users of every operation from which an operation that curves can be reached.
+struct CurvedPaths {
+    /// Operations that use each operation, and that curve or are used by one that does.
+    users: Vec<Vec<usize>>,
+}
+
+impl CurvedPaths {
+    fn of(tape: &Tape) -> Self {
+        let mut users: Vec<Vec<usize>> = vec![Vec::new(); tape.operations.len()];
+        for (place, local) in tape.operations.iter().enumerate().rev() {
+            let Some(Local { of: [a, b], second, .. }) = local else { continue };
+            // OK because the users of an operation come after it: its own list is complete here.
+            if *second != [0.0; 3] || !users[place].is_empty() {
+                users[*a].push(place);
+                if a != b {
+                    users[*b].push(place);
+                }
+            }
+        }
+        Self { users }
+    }
+
+    /// Returns the second derivative by the variable at this place. `moves` is 0 everywhere, before and after.
+    fn second(&self, tape: &Tape, adjoints: &[f64], variable: usize, moves: &mut [f64]) -> f64 {
+        // Operations in their order, each once, since all that it uses has moved by then.
+        let mut pending: BTreeSet<usize> = self.users[variable].iter().copied().collect();
+        let (mut second, mut moved) = (0.0, vec![variable]);
+        moves[variable] = 1.0;
+        while let Some(place) = pending.pop_first() {
+            let Some(Local { of: [a, b], first, second: [aa, ab, bb] }) = &tape.operations[place] else { continue };
+            let (of_a, of_b) = (moves[*a], moves[*b]);
+            second += adjoints[place] * (aa * of_a * of_a + 2.0 * ab * of_a * of_b + bb * of_b * of_b);
+            moves[place] = first[0] * of_a + first[1] * of_b;
+            moved.push(place);
+            pending.extend(&self.users[place]);
+        }
+        moved.into_iter().for_each(|place| moves[place] = 0.0);
+        second
+    }
+}
+
 /// Returns a flag for each node on which the results depend at this point: the condition and one branch of an `if`.
 fn taken(nodes: &[GraphNode], roots: &[NodeId], values: &[f64]) -> Vec<bool> {
     let mut taken = vec![false; nodes.len()];
@@ -319,6 +390,13 @@ mod tests {
                 let jet = set.jets(&[0], |d| Jet::variable(at[d], along(d)))[0].second().expect(text);
                 assert!((found - jet).abs() <= 1e-13 * (1.0 + jet.abs()), "{text} by {j}, {k}: {found} for {jet}");
             }
+            let pure = set.pure(0, &at, &[4, 0, 1, 2, 3]).expect(text);
+            for (&d, [first, second]) in [4, 0, 1, 2, 3].iter().zip(pure) {
+                let jet = set.jets(&[0], |index| Jet::variable(at[index], [f64::from(u8::from(index == d)); 2]))[0];
+                let (of_jet, curvature) = (jet.first(0).expect(text), jet.second().expect(text));
+                assert!((first - of_jet).abs() <= 1e-13 * (1.0 + of_jet.abs()), "{text} by {d}: {first} for {of_jet}");
+                assert!((second - curvature).abs() <= 1e-13 * (1.0 + curvature.abs()), "{text} by {d}: {second}");
+            }
         }
     }
 
@@ -327,6 +405,7 @@ mod tests {
     fn kinks_and_edges_say_nothing() {
         for text in ["abs(x) + y", "min(x, y)", "sqrt(x)*y", "if(x, 1, y)", "floor(x)*y", "x/0", "if(x < y, x, y*x)"] {
             assert_eq!(set(text, &["x", "y"]).mixed(0, &[0.0, 0.0], &[(0, 1)]), None, "{text}");
+            assert_eq!(set(text, &["x", "y"]).pure(0, &[0.0, 0.0], &[0, 1]), None, "{text}");
         }
         // A constant has no kink, and a branch that is not taken does not count.
         let names = ["x", "y"];

@@ -62,13 +62,29 @@ impl Sloped {
 
     /// Returns `a + b`. A slope along a dimension that only one of them depends on is copied, because sums of many terms have many slopes.
     fn sum(value: Interval, a: &Self, b: &Self) -> Self {
-        let apart = match (a.slopes.last(), b.slopes.first()) {
-            (Some((last, _)), Some((first, _))) => last < first,
-            _ => true,
-        };
-        match apart {
+        match a.ends_before(b) {
             true => Self { value, slopes: [&a.slopes[..], &b.slopes[..]].concat() },
             false => Self::from(value, a, b, Interval::add),
+        }
+    }
+
+    /// Returns `a - b`, with copied slopes as in a sum.
+    fn difference(value: Interval, a: &Self, b: &Self) -> Self {
+        if !a.ends_before(b) {
+            return Self::from(value, a, b, Interval::subtract);
+        }
+        let zero = Interval::constant(0.0);
+        let mut slopes = Vec::with_capacity(a.slopes.len() + b.slopes.len());
+        slopes.extend_from_slice(&a.slopes);
+        slopes.extend(b.slopes.iter().map(|(d, slope)| (*d, zero.subtract(slope))));
+        Self { value, slopes }
+    }
+
+    /// True if all dimensions of `self` come before those of `other`.
+    fn ends_before(&self, other: &Self) -> bool {
+        match (self.slopes.last(), other.slopes.first()) {
+            (Some((last, _)), Some((first, _))) => last < first,
+            _ => true,
         }
     }
 
@@ -147,7 +163,7 @@ impl Scalar for Sloped {
         match function {
             _ if a.slopes.is_empty() && b.slopes.is_empty() => Self::still(y),
             Binary::Add => Self::sum(y, a, b),
-            Binary::Subtract => Self::from(y, a, b, Interval::subtract),
+            Binary::Subtract => Self::difference(y, a, b),
             Binary::Multiply => Self::from(y, a, b, |of_a, of_b| of_a.multiply(&b.value).add(&a.value.multiply(of_b))),
             // The slope follows from q b = a.
             Binary::Divide => Self::from(y, a, b, |of_a, of_b| of_a.subtract(&y.multiply(of_b)).divide(&b.value)),

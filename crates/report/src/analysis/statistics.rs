@@ -1,5 +1,8 @@
 //! Statistics of a characteristic with their errors, its intervals, and its strongest contributors.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
 use crate::DimensionReport;
 use crate::analysis::worst_case::KnownWorstCaseFigures;
 use crate::document::number::{
@@ -240,11 +243,15 @@ impl<'r> Contributor<'r> {
 /// Dimensions and geometric elements that matter, in the order of the study.
 fn elements<'r>(one: &'r CharacteristicAnalysis, dimensions: &'r [DimensionReport]) -> Vec<Contributor<'r>> {
     let mut all: Vec<Contributor<'_>> = Vec::new();
+    let mut places: HashMap<&str, usize> = HashMap::new();
     for row in one.sensitivities.iter().zip(dimensions).filter(|(row, of)| matters(row, of)) {
         let name = element(&row.0.dimension);
-        match all.iter_mut().find(|known| known.name == name) {
-            Some(known) => known.parts.push(row),
-            None => all.push(Contributor { name, parts: vec![row] }),
+        match places.entry(name) {
+            Entry::Occupied(place) => all[*place.get()].parts.push(row),
+            Entry::Vacant(place) => {
+                place.insert(all.len());
+                all.push(Contributor { name, parts: vec![row] });
+            }
         }
     }
     // Parts of an element without effect here are dropped if another part has one.
