@@ -546,7 +546,7 @@ class Study:
         progress: Progress = None,
         on_interrupt: Interrupt = "raise",
     ) -> AllocationResult:
-        """The cheapest tolerances that keep what is required; `r.study` is the study with them.
+        """The cheapest tolerances that keep the requirements; `r.study` is the study with them.
 
         `recentre` names dimensions whose nominal values may move, as a mapping with least and greatest values. `cost` takes relative
         costs in place of the study's own. `minimise="rejects"` or `maximise="cpk"` seeks the best that `cost_limit` pays for, in

@@ -67,7 +67,7 @@ impl Exit {
              points were evaluated; `--check --strict`: a requirement is met by the surface only; no fresh process confirmed \
              answers of an external model: they depend on the points before them, or the run ended before their check",
         ),
-        (Self::NotAllocated, "`allocate`: no tolerances keep what is required, or they were not found in time"),
+        (Self::NotAllocated, "`allocate`: no tolerances keep the requirements, or they were not found in time"),
         (
             Self::Interrupted,
             "interrupted: the first Ctrl-C reports what is known, the second gives up what is under way, the third ends at once",

@@ -432,7 +432,7 @@ impl AllocationReport {
             x,
             y: PlotAxis::new("cost", PlotScale::Linear(0.05)),
             layers: vec![Layer::Curve(line, Stroke::Thin), Layer::Points(points)],
-            words: "Filled: the cheapest tolerances that keep what is required. Open: what the tolerances before keep and cost.".to_owned(),
+            words: "Filled: the cheapest tolerances that keep the requirements. Open: what the tolerances before keep and cost.".to_owned(),
         }
     }
 }
