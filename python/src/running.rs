@@ -105,7 +105,9 @@ fn answer(study: &Study, asked: &Asked, stop: &Stop, counter: &Counter) -> Resul
     let abandoned = || stop.asked.load(Ordering::Relaxed);
     let run = Run::to_the_end().stopping_when(&reason).abandoning_when(&abandoned);
     let mut found = done(study, asked, &run, &|answered, expected| counter.tell(answered, expected))?;
-    found.not_kept = study.problem.function().account().and_then(|account| account.not_kept);
+    if let Some(account) = study.problem.function().account() {
+        found.not_kept = account.not_kept.or(account.fails_everywhere.map(|error| error.to_string()));
+    }
     Ok(found)
 }
 

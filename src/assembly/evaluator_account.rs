@@ -22,6 +22,8 @@ pub struct EvaluatorAccount {
     pub damaged: Option<DamagedJournal>,
     /// Reason in one line why answers could not be stored; None if all were stored. Nothing was evaluated after that.
     pub not_kept: Option<String>,
+    /// Error of a model that failed at every point so far; None for others. Nothing was evaluated after that.
+    pub fails_everywhere: Option<ProcessError>,
 }
 
 /// Journal whose answers belong to another model than the one that runs now.
@@ -75,6 +77,7 @@ impl EvaluatorAccount {
             outdated: self.outdated.or(other.outdated),
             damaged: self.damaged.or(other.damaged),
             not_kept: self.not_kept.or(other.not_kept),
+            fails_everywhere: self.fails_everywhere.or(other.fails_everywhere),
             ..self
         }
     }

@@ -147,6 +147,16 @@ pub enum ProcessFault {
         /// Answer after steps along one dimension after the other.
         third: Option<f64>,
     },
+    /// The process has failed at every point so far for one reason, so that no more points are sent.
+    #[error("the model has no value at {}, always because: {}", failed_points(*nominal, *others), clipped(message))]
+    FailsEverywhere {
+        /// True if the nominal point is one of them.
+        nominal: bool,
+        /// Number of the others.
+        others: usize,
+        /// First reason.
+        message: String,
+    },
     /// The process requested another attempt at the point every time, which is not an answer of the model. It is not kept in a journal.
     #[error("{}", clipped(message))]
     Unable {
@@ -231,6 +241,15 @@ fn in_own(name: &str, own: &str, factor: Option<f64>) -> String {
             format!("write `{name}` in {own}, or units = \"convert\" at the top; \"labels\" takes numbers as they are")
         }
         None => format!("they measure different things; write `{name}` in {own}"),
+    }
+}
+
+/// Names the points of a model that fails everywhere.
+fn failed_points(nominal: bool, others: usize) -> String {
+    if nominal {
+        format!("the nominal dimensions and {others} other points")
+    } else {
+        format!("the first {others} points")
     }
 }
 

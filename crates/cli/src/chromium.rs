@@ -1,11 +1,12 @@
 //! Prints a page by an installed Chromium.
 
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::failure::Failure;
 use crate::interrupt;
+use sensitol_external::process::GroupedProcess;
 use sensitol_report::html::{Paper, on_paper};
 
 /// Variable that names the browser.
@@ -80,43 +81,28 @@ impl PrintWait {
 fn print(browser: &Path, flags: &[&str], wait: &PrintWait, [folder, source, target]: [&Path; 3]) -> Result<(), String> {
     let of = |name: &str, path: &Path| format!("--{name}={}", path.display());
     let mut command = Command::new(browser);
-    // A browser is several processes, which end together as one group.
-    #[cfg(unix)]
-    std::os::unix::process::CommandExt::process_group(&mut command, 0);
-    let mut child = command
+    command
         .args(["--headless", "--disable-gpu", "--no-first-run", "--disable-background-networking"])
         .args(["--no-pdf-header-footer", &of("user-data-dir", &folder.join("profile")), &of("print-to-pdf", target)])
         .args(flags)
         .arg(source)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(|error| error.to_string())?;
+        .stderr(Stdio::null());
+    // A browser is several processes, which end together.
+    let mut child = GroupedProcess::start(command).map_err(|error| error.to_string())?;
     loop {
         match (child.try_wait(), wait.over()) {
             (Ok(Some(status)), _) if status.success() => return Ok(()),
             (Ok(Some(status)), _) => return Err(format!("it ended with {status}")),
             (Ok(None), None) => std::thread::sleep(LOOK),
             (Ok(None), Some(reason)) => {
-                end(&mut child);
+                let _ = child.kill();
                 return Err(reason);
             }
             (Err(error), _) => return Err(error.to_string()),
         }
     }
-}
-
-/// Ends a browser with its group. The number of the group belongs to it until the browser itself is waited for.
-fn end(child: &mut Child) {
-    #[cfg(unix)]
-    {
-        let mut command = Command::new("/bin/sh");
-        command.args(["-c", "kill -s KILL -- \"-$1\"", "sensitol-end", &child.id().to_string()]);
-        let _ = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
-    }
-    let _ = child.kill();
-    let _ = child.wait();
 }
 
 /// Paper of the user's locale.
@@ -141,25 +127,5 @@ mod tests {
         let papers = ["en_US.UTF-8", "es_MX", "de_DE.UTF-8", "C.UTF-8", "", "en_GB@euro"].map(paper_of);
         use Paper::{A4, Letter};
         assert_eq!(papers, [Letter, Letter, A4, A4, A4, A4]);
-    }
-
-    /// A process that the browser started ends with it.
-    #[cfg(unix)]
-    #[test]
-    fn the_whole_group_of_a_browser_ends() {
-        use std::io::{BufRead, BufReader, Read};
-        let mut command = Command::new("/bin/sh");
-        std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        command.args(["-c", "sleep 600 & echo started; wait"]).stdout(Stdio::piped());
-        let mut child = command.spawn().unwrap();
-        let mut output = BufReader::new(child.stdout.take().unwrap());
-        let mut line = String::new();
-        output.read_line(&mut line).unwrap();
-        assert_eq!(line, "started\n");
-        let begun = Instant::now();
-        end(&mut child);
-        // The pipe ends once no process of the group holds it.
-        output.read_to_string(&mut line).unwrap();
-        assert!(begun.elapsed() < LIMIT, "{:?}", begun.elapsed());
     }
 }

@@ -7,6 +7,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use crate::advice;
 use sensitol::allocation::AllocateError;
+use sensitol::assembly::ProcessError;
 use sensitol::compare::CompareError;
 use sensitol::lot::LotError;
 use sensitol::method::MethodError;
@@ -190,6 +191,10 @@ pub(super) enum Failure {
     Threads { threads: u16, reason: String },
     #[error("{reason}. The run was ended: what is in the journal stays, and the same command goes on from there")]
     NotKept { reason: String },
+    #[error(
+        "{error}. No more points were evaluated: `sensitol evaluate STUDY --at nominal -v` shows what the model writes, and `sensitol probe STUDY` tries it"
+    )]
+    FailsEverywhere { error: Box<ProcessError> },
     #[error("nothing reads the output any more")]
     ClosedPipe,
 }

@@ -142,6 +142,7 @@ impl Failure {
             | Self::PointsOfOne { .. } => "command-line",
             Self::Threads { .. } => "threads",
             Self::NotKept { .. } => "not-kept",
+            Self::FailsEverywhere { .. } => "model-fails",
             Self::ClosedPipe => "closed-pipe",
         }
     }

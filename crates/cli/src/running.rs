@@ -95,10 +95,15 @@ pub(super) fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T
     Ok(pool.map_err(|error| Failure::Threads { threads, reason: error.to_string() })?.install(work))
 }
 
-/// Checks that every answer was kept. A run whose journal could not be written has no result.
+/// Checks that every answer was kept and that the model has values. A run whose journal could not be written, or whose model fails at every
+/// point, has no result.
 pub(super) fn kept(problem: &Problem) -> Result<(), Failure> {
-    match problem.function().account().and_then(|account| account.not_kept) {
-        Some(reason) => Err(Failure::NotKept { reason }),
+    let Some(account) = problem.function().account() else { return Ok(()) };
+    if let Some(reason) = account.not_kept {
+        return Err(Failure::NotKept { reason });
+    }
+    match account.fails_everywhere {
+        Some(error) => Err(Failure::FailsEverywhere { error: Box::new(error) }),
         None => Ok(()),
     }
 }

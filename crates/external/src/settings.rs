@@ -36,7 +36,7 @@ pub struct Settings {
     /// True if the nominal point is evaluated again from time to time, to check that the model still gives the same answer.
     pub sentinels: bool,
     /// Number of answers that are replayed in a fresh process, which reaches them from the nominal point in small steps. This finds answers
-    /// that depend on the points before them. The default is 5 %, at least 5, and 2 more, up to 59. No replay for 0, or without `sentinels`.
+    /// that depend on the points before them. The default is 5 %, at least 7 and at most 59. No replay for 0, or without `sentinels`.
     pub verify: Option<usize>,
     /// Handling of units that the program declares and that differ from the study's.
     pub units: ForeignUnits,

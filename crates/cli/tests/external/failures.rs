@@ -113,3 +113,53 @@ fn failures_of_the_run_itself_count_once() {
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(counts(&report).0, study.recorded(0.1) as u64);
 }
+
+/// Report of `analyze` on a program that has a value where this condition on `x` holds, and the number of points that it was asked.
+fn asked(condition: &str) -> (Option<i32>, serde_json::Value, usize) {
+    let folder = tempfile::tempdir().unwrap();
+    let script = format!(
+        "import json, sys\n\
+         sys.stdin.readline()\n\
+         print(json.dumps({{'ready': True}}), flush=True)\n\
+         for line in sys.stdin:\n    \
+             open('asked', 'a').write('x')\n    \
+             point = json.loads(line)\n    \
+             x = point['x']\n    \
+             answer = {{'y': [sum(x)]}} if {condition} else {{'error': 'no licence at %r' % x}}\n    \
+             print(json.dumps({{'id': point['id'], **answer}}), flush=True)\n"
+    );
+    std::fs::write(folder.path().join("model.py"), script).unwrap();
+    let dimension = |d: usize| format!("x{d} = {{ nominal = 1, tolerance = 0.1 }}\n");
+    let dimensions: String = (0..6).map(dimension).collect();
+    let text = format!(
+        "[model]\ncommand = [\"python3\", \"model.py\"]\nverify = 0\n[dimensions]\n{dimensions}[characteristics]\ny = {{ lower = 0 }}\n"
+    );
+    let path = folder.path().join("study.toml");
+    std::fs::write(&path, text).unwrap();
+    let output = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"))
+        .args(["analyze", "--method", "full", "--journal", "none", "--json"])
+        .arg(&path)
+        .output()
+        .unwrap();
+    let asked = std::fs::read(folder.path().join("asked")).unwrap().len();
+    (output.status.code(), serde_json::from_slice(&output.stdout).unwrap_or_default(), asked)
+}
+
+/// A program that fails everywhere for one reason is asked the nominal point and five others, each with a sentinel after it.
+#[test]
+fn a_program_that_fails_everywhere_is_asked_few_points() {
+    let (code, report, count) = asked("False");
+    let error = &report["errors"][0];
+    assert_eq!((code, error["code"].as_str()), (Some(2), Some("model-fails")), "{report}");
+    let message = error["message"].as_str().unwrap_or_default();
+    assert!(message.contains("no licence") && message.contains("sensitol probe"), "{message}");
+    assert!(count <= 12, "{count}");
+}
+
+/// A program with values elsewhere is asked all 37 points, even if it has none at the nominal dimensions.
+#[test]
+fn a_program_that_fails_at_the_nominal_point_alone_is_asked_all() {
+    let (code, report, count) = asked("any(one != 1 for one in x)");
+    assert_ne!(code, Some(2), "{report}");
+    assert!(count >= 37, "{count}");
+}

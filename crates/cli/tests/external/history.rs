@@ -173,7 +173,7 @@ fn what_a_replay_costs() {
     assert_eq!([of_20, of_400, of_2000], [1, 7, 32]);
     assert_eq!(extra(20, None) - of_20, 7 * 4);
     assert_eq!(extra(20, Some(3)) - of_20, 3 * 4);
-    assert_eq!(extra(400, None) - of_400, (20 + 2) * 4);
+    assert_eq!(extra(400, None) - of_400, 20 * 4);
     // At most 59 replays.
     assert_eq!(extra(2000, None) - of_2000, 59 * 4);
 }

@@ -3,15 +3,14 @@
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
-use std::process::{ExitStatus, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use process_wrap::std::{ChildWrapper, CommandWrap};
-
 use super::descendants::{Mark, VARIABLE};
+use super::group::GroupedProcess;
 use super::line_reader::{UnfinishedLine, read_line};
 use super::protocol::Line;
 use crate::settings::Listener;
@@ -46,13 +45,15 @@ pub(super) struct Child {
     /// Ends the child's group if this process ends in any way; None if it cannot be started.
     #[cfg(unix)]
     guard: Option<Guard>,
-    process: Box<dyn ChildWrapper>,
+    process: GroupedProcess,
     /// Mark of its descendants, which ends those that left the group.
     mark: Mark,
     /// Channel to the thread that writes to stdin; None once stdin is closed.
     requests: Option<Sender<Vec<u8>>>,
     /// Time at which stdin was closed; None while it is open.
     closed: Option<Instant>,
+    /// Way in which the child ended; None before.
+    ended: Option<Exit>,
     stderr: Arc<Mutex<VecDeque<String>>>,
     unfinished: UnfinishedLine,
     readers: Vec<JoinHandle<()>>,
@@ -74,23 +75,18 @@ impl Child {
     ) -> Result<Self, ProcessFault> {
         let program = &argv[0];
         let mark = Mark::new();
-        let mut command = CommandWrap::with_new(path(program, folder), |command| {
-            command.args(&argv[1..]).current_dir(folder).env(VARIABLE, mark.value());
-            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        });
+        let mut command = Command::new(path(program, folder));
+        command.args(&argv[1..]).current_dir(folder).env(VARIABLE, mark.value());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         // The whole group ends with its leader, so that no grandchild is left behind.
-        #[cfg(unix)]
-        command.wrap(process_wrap::std::ProcessGroup::leader());
-        #[cfg(windows)]
-        command.wrap(process_wrap::std::JobObject);
-        let mut process = command.spawn().map_err(|error| match error.kind() {
+        let mut process = GroupedProcess::start(command).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound if folder.is_dir() => {
                 ProcessFault::NotFound { program: program.clone(), folder: folder.display().to_string() }
             }
             _ => ProcessFault::NotStarted { program: program.clone(), reason: error.to_string() },
         })?;
         let (requests, lines) = channel::<Vec<u8>>();
-        let mut stdin = process.stdin().take().expect("stdin is a pipe");
+        let mut stdin = process.take_stdin().expect("stdin is a pipe");
         // A child that never reads its stdin blocks this thread only.
         let write = move || {
             for line in lines {
@@ -99,11 +95,11 @@ impl Child {
                 }
             }
         };
-        let stdout = process.stdout().take().expect("stdout is a pipe");
+        let stdout = process.take_stdout().expect("stdout is a pipe");
         let (events, unfinished) = (events.clone(), UnfinishedLine::default());
         let written = unfinished.clone();
         let stderr = Arc::new(Mutex::new(VecDeque::new()));
-        let (pipe, tail) = (process.stderr().take().expect("stderr is a pipe"), Arc::clone(&stderr));
+        let (pipe, tail) = (process.take_stderr().expect("stderr is a pipe"), Arc::clone(&stderr));
         let streams = thread(write).and_then(|_| {
             let out = thread(move || read(stdout, number, &events, &written))?;
             Ok(vec![out, thread(move || listen(pipe, &tail, listener.as_ref()))?])
@@ -112,7 +108,7 @@ impl Child {
             Ok(readers) => readers,
             Err(error) => {
                 // The child is killed at once: without threads nothing can be exchanged with it.
-                let _ = process.start_kill();
+                let _ = process.kill();
                 let reason = format!("there is no thread for its streams: {error}");
                 return Err(ProcessFault::NotStarted { program: program.clone(), reason });
             }
@@ -127,6 +123,7 @@ impl Child {
             mark,
             requests: Some(requests),
             closed: None,
+            ended: None,
             stderr,
             unfinished,
             readers,
@@ -158,6 +155,32 @@ impl Child {
 
     /// Ends the child and its group. It has `grace` to end by itself before it is killed.
     fn end(&mut self, grace: Duration) -> (Exit, StderrTail) {
+        if self.ended.is_none() {
+            self.end_group(grace);
+            Mark::kill([&self.mark]);
+        }
+        self.read_out()
+    }
+
+    /// Ends children and their groups together, so that one search finds what left the groups. Each has the usual time to end by itself.
+    pub(super) fn end_all(mut children: Vec<Self>) {
+        // All are told first, so that they end at the same time.
+        children.iter_mut().for_each(Self::close);
+        children.iter_mut().for_each(|child| child.end_group(GRACE));
+        Mark::kill(children.iter().map(|child| &child.mark));
+    }
+
+    /// True if the child has ended, or if its time to end by itself is over.
+    pub(super) fn is_at_its_end(&mut self) -> bool {
+        let is_over = self.closed.is_some_and(|closed| closed.elapsed() >= GRACE);
+        is_over || self.ended.is_some() || matches!(self.process.try_wait(), Ok(Some(_)))
+    }
+
+    /// Ends the child and its group, without the processes that left the group.
+    fn end_group(&mut self, grace: Duration) {
+        if self.ended.is_some() {
+            return;
+        }
         self.close();
         let begun = self.closed.unwrap_or_else(Instant::now);
         let mut status = self.process.try_wait().ok().flatten();
@@ -169,16 +192,18 @@ impl Child {
         // The guard must end before the group's number is free for other processes.
         #[cfg(unix)]
         drop(self.guard.take());
-        let _ = self.process.start_kill();
-        let status = status.or_else(|| self.process.wait().ok());
-        self.mark.kill();
+        let status = self.process.kill().or(status);
+        self.ended = Some(if by_itself { status.map_or(Exit::Signal(None), exit) } else { Exit::ClosedStdout });
+    }
+
+    /// Waits for the last lines of a child that has ended. Returns the way in which it ended, and the end of its stderr.
+    fn read_out(&self) -> (Exit, StderrTail) {
         // The pipes are closed now, unless a process left the group. Their last lines are worth a short wait.
         let begun = Instant::now();
         while !self.readers.iter().all(JoinHandle::is_finished) && begun.elapsed() < Duration::from_millis(200) {
             std::thread::sleep(Duration::from_millis(1));
         }
-        let exit = if by_itself { status.map_or(Exit::Signal(None), exit) } else { Exit::ClosedStdout };
-        (exit, self.tail())
+        (self.ended.unwrap_or(Exit::Signal(None)), self.tail())
     }
 
     pub(super) fn tail(&self) -> StderrTail {
@@ -221,7 +246,9 @@ impl Drop for Guard {
 
 impl Drop for Child {
     fn drop(&mut self) {
-        self.end(GRACE);
+        if self.ended.is_none() {
+            self.end(GRACE);
+        }
     }
 }
 

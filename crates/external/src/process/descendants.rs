@@ -37,10 +37,11 @@ impl Mark {
         format!("{above}{}:", self.0)
     }
 
-    /// Kills every process with the mark. Where there is no /proc, none is found.
-    pub(super) fn kill(&self) {
+    /// Kills every process with one of the marks. Where there is no /proc, none is found.
+    pub(super) fn kill<'a>(marks: impl IntoIterator<Item = &'a Self>) {
+        let marks: Vec<String> = marks.into_iter().map(|mark| format!("{}:", mark.0)).collect();
         for _ in 0..SEARCHES {
-            let found = self.living();
+            let found = if marks.is_empty() { Vec::new() } else { living(&marks) };
             if found.is_empty() {
                 return;
             }
@@ -50,18 +51,20 @@ impl Mark {
             let _ = command.status();
         }
     }
+}
 
-    /// Numbers of the processes with the mark. A zombie has no environment, and is not among them.
-    fn living(&self) -> Vec<String> {
-        let own = std::process::id().to_string();
-        let mark = format!("{}:", self.0);
-        let numbers = std::fs::read_dir("/proc").into_iter().flatten().flatten();
-        let numbers = numbers.filter_map(|entry| entry.file_name().into_string().ok());
-        let numbers = numbers.filter(|name| name.bytes().all(|digit| digit.is_ascii_digit()) && *name != own);
-        let marked = |number: &String| {
-            let environment = std::fs::read(Path::new("/proc").join(number).join("environ")).unwrap_or_default();
-            environment.windows(mark.len()).any(|part| part == mark.as_bytes())
-        };
-        numbers.filter(marked).collect()
-    }
+/// Numbers of the processes with one of the marks. A zombie has no environment, and is not among them.
+fn living(marks: &[String]) -> Vec<String> {
+    let own = std::process::id().to_string();
+    let numbers = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let numbers = numbers.filter_map(|entry| entry.file_name().into_string().ok());
+    let numbers = numbers.filter(|name| name.bytes().all(|digit| digit.is_ascii_digit()) && *name != own);
+    let marked = |number: &String| {
+        let environment = std::fs::read(Path::new("/proc").join(number).join("environ")).unwrap_or_default();
+        let name = format!("{VARIABLE}=");
+        let of = environment.split(|&byte| byte == 0).find_map(|entry| entry.strip_prefix(name.as_bytes()));
+        let value = String::from_utf8_lossy(of.unwrap_or_default());
+        marks.iter().any(|mark| value.contains(mark.as_str()))
+    };
+    numbers.filter(marked).collect()
 }

@@ -9,12 +9,15 @@
 //! is ended, and a fresh one evaluates again what it has answered since.
 //!
 //! A failed point is tried again `retries` times, alone in a fresh child. So a point that crashes children is found and affects no other. A
-//! failed child is started again after a pause that doubles every time.
+//! failed child is started again after a pause that doubles every time. A program without a value at the first points, all of which fail for
+//! one reason, is not asked for the others.
 
 mod batch;
 mod border;
 mod child;
 mod descendants;
+mod futility;
+mod group;
 mod lane;
 mod line_reader;
 mod pool;
@@ -26,5 +29,6 @@ mod suspicion;
 mod walk;
 mod worker;
 
+pub use group::GroupedProcess;
 pub use program::Process;
 pub(crate) use program::Recheck;

@@ -1,6 +1,7 @@
 //! Pool of child processes, with the points under way in each.
 
 mod answers;
+mod renewal;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,6 +11,7 @@ use std::time::{Duration, Instant};
 use super::batch::Batch;
 use super::border::Border;
 use super::child::{Child, Event, What};
+use super::futility::Futility;
 use super::lane::Lane;
 use super::protocol::{Hello, Line, VERSION, request};
 use super::sentinel::{Reference, SENTINEL, interval, is_flip};
@@ -51,8 +53,12 @@ pub(super) struct Pool {
     unused: u32,
     /// Error of the last such child, once there were too many.
     useless: Option<ProcessError>,
-    /// Error of a child whose line did not end. No points are sent after it.
-    endless: Option<ProcessError>,
+    /// Error of a child whose line did not end, or of a model that fails everywhere. No points are sent after it.
+    last_error: Option<ProcessError>,
+    /// Outcomes of points, until one had a value.
+    pub(super) futility: Futility,
+    /// Number of fresh children that the check of the current batch needs.
+    fresh_wanted: usize,
     adapter: Option<ModelInfo>,
     /// True if numbers are converted on their way to the program and back.
     pub(super) converts: bool,
@@ -78,6 +84,8 @@ pub(super) struct Slot {
     failures: u32,
     /// Time since which the slot has had no child that answers; None unless a child failed.
     lost: Option<Instant>,
+    /// Places at which an earlier child of the slot reported evaluations.
+    known_places: Vec<String>,
 }
 
 #[derive(Default)]
@@ -90,6 +98,8 @@ pub(super) enum State {
     /// A child that is not ready yet, and the deadline for it.
     Starting(Child, Instant),
     Ready(Box<Worker>),
+    /// A child that was told to end, so that a fresh one takes its place.
+    Ending(Child),
 }
 
 impl Pool {
@@ -107,7 +117,9 @@ impl Pool {
             failed_starts: 0,
             unused: 0,
             useless: None,
-            endless: None,
+            last_error: None,
+            futility: Futility::default(),
+            fresh_wanted: 0,
             adapter: None,
             converts: false,
             reference: Reference::default(),
@@ -147,7 +159,9 @@ impl Pool {
 
     /// Evaluates all rows of `points` that have no answer yet. After a stop, points under way are waited for and others stay open.
     pub(super) fn evaluate(&mut self, points: &Points, run: &Run<'_>, out: &mut Responses) {
+        self.fresh_wanted = self.walkers(points);
         self.work_off(Batch::new(points, out), run);
+        self.fresh_wanted = 0;
     }
 
     /// Evaluates the open rows of a batch.
@@ -172,13 +186,14 @@ impl Pool {
             if checked || (stopping && !self.busy() && !waits) {
                 break;
             }
-            let dispatched = match &self.endless {
+            let dispatched = match &self.last_error {
                 Some(error) => Err(error.clone()),
                 None if stopping => Ok(()),
                 None => self.dispatch(work),
             };
             let turned = dispatched.and_then(|()| self.turn(&mut batch));
             let work = batch.as_mut().expect("a batch");
+            self.note_outcomes(work);
             if let Err(error) = turned {
                 // No child can be had any more.
                 work.give_up(&error);
@@ -208,29 +223,14 @@ impl Pool {
         }
     }
 
-    /// Ends children, so that their next points go to fresh ones.
-    pub(super) fn end_children(&mut self, slots: Vec<usize>) {
-        // All are told first, so that they end at the same time.
-        slots.iter().for_each(|&slot| self.slots[slot].close());
-        slots.into_iter().for_each(|slot| self.slots[slot].state = State::Empty);
-    }
-
-    /// Places at which each child has reported evaluations; none for most.
-    pub(super) fn places(&self) -> Vec<(usize, Vec<String>)> {
-        let of = |slot: &Slot| match &slot.state {
-            State::Ready(worker) => worker.places.iter().take(worker.window).cloned().collect(),
-            _ => Vec::new(),
-        };
-        self.slots.iter().map(of).enumerate().collect()
-    }
-
     /// True if the child is ready. Starts one if there is none.
     pub(super) fn ensure_child(&mut self, index: usize) -> Result<bool, ProcessError> {
-        let start = match &self.slots[index].state {
+        let start = match &mut self.slots[index].state {
             State::Ready(_) => return Ok(true),
             State::Starting(..) => false,
             State::Empty => true,
             State::Pausing(until) => *until <= Instant::now(),
+            State::Ending(child) => child.is_at_its_end(),
         };
         // Later failures arrive as events.
         if start && let Err(error) = self.start(index) {
@@ -268,7 +268,7 @@ impl Pool {
             // One child for each window of points is enough.
             wanted = wanted.saturating_sub(self.adapter.as_ref().map_or(1, |adapter| adapter.window));
         }
-        Ok(())
+        if batch.unsent() == 0 { self.renew() } else { Ok(()) }
     }
 
     fn give(&mut self, index: usize, batch: &mut Batch<'_>) {
@@ -362,7 +362,7 @@ impl Pool {
 
     fn deadlines(&self) -> impl Iterator<Item = Instant> {
         self.slots.iter().filter_map(|slot| match &slot.state {
-            State::Empty => None,
+            State::Empty | State::Ending(_) => None,
             State::Pausing(until) => Some(*until),
             State::Starting(_, until) => Some(*until),
             State::Ready(worker) => worker.deadline(self.settings.timeout),
@@ -388,7 +388,7 @@ impl Pool {
                         let error = ProcessError { fault: ProcessFault::EndlessLine { after }, stderr };
                         self.slots[index].state = State::Empty;
                         self.account.failed(&error);
-                        self.endless = Some(error.clone());
+                        self.last_error = Some(error.clone());
                         return Err(error);
                     }
                     let fault = ProcessFault::TimedOut { after };
@@ -580,27 +580,11 @@ impl Pool {
 }
 
 impl Slot {
-    /// Tells the child that no more points follow.
-    fn close(&mut self) {
-        match &mut self.state {
-            State::Starting(child, _) => child.close(),
-            State::Ready(worker) => worker.child.close(),
-            State::Empty | State::Pausing(_) => {}
-        }
-    }
-
     /// True if the slot has no answers that a sentinel must still confirm, and no points under way.
     fn is_checked(&self) -> bool {
         match &self.state {
             State::Ready(worker) => worker.unchecked.is_empty() && worker.under_way.is_empty(),
             _ => true,
         }
-    }
-}
-
-impl Drop for Pool {
-    /// Closes all children first, so that they end at the same time.
-    fn drop(&mut self) {
-        self.slots.iter_mut().for_each(Slot::close);
     }
 }

@@ -148,6 +148,9 @@ impl Pool {
     /// Adds answers of an earlier run, with which later ones are compared. That run confirmed each of them, or the usual part.
     pub(super) fn remember(&mut self, points: &[Vec<f64>], values: &[Values], each_confirmed: bool) {
         values.iter().for_each(|values| self.reference.learn(values));
+        if values.iter().flatten().any(Option::is_some) {
+            self.futility.note_value();
+        }
         self.answers.remember(points, values, &self.hello.nominal, each_confirmed);
     }
 

@@ -13,9 +13,11 @@ use std::collections::{HashMap, HashSet};
 const KEPT: usize = 20_000;
 /// Part of all answers that is replayed.
 const PART: f64 = 0.05;
+/// Replays owed wait for the next batch while they are at most this part of those made: 4.5 % are replayed at any time.
+const PATIENCE: usize = 10;
 /// Smallest number of replayed answers, besides the random ones.
 const LEAST: usize = 5;
-/// Number of answers that are replayed in addition, independently of their score.
+/// Number of the replayed answers that are chosen independently of their score.
 const RANDOM: usize = 2;
 /// Greatest number of replayed answers. They find flips in 5 % of the points with a probability of 95 %, since 0.95^59 < 0.05.
 const MOST: usize = 59;
@@ -117,9 +119,13 @@ impl Answers {
         }
     }
 
-    /// Number of answers that are still to be replayed.
-    fn owed(&self) -> usize {
-        most_replays(self.answered, None).saturating_sub(self.replayed)
+    /// Number of answers to replay once so many more are there. Few of them wait for the next batch, since a check of its own takes as long
+    /// for one as for many.
+    pub(super) fn owed_after(&self, more: usize, given: Option<usize>) -> usize {
+        let all = most_replays(self.answered + more, given);
+        let owed = all.saturating_sub(self.replayed);
+        let may_wait = given.is_none() && all < MOST && owed * PATIENCE <= self.replayed;
+        if may_wait { 0 } else { owed }
     }
 
     /// Rows to replay: those with the highest scores, and two others. Their number follows from `most` or from the usual part, less those
@@ -131,7 +137,7 @@ impl Answers {
         nominal: &[f64],
         most: Option<usize>,
     ) -> Vec<usize> {
-        let owed = most.map_or_else(|| self.owed(), |most| most.saturating_sub(self.replayed));
+        let owed = self.owed_after(0, most);
         let scores = self.scores(points, values);
         let usable = |&row: &usize| values[row].iter().any(Option::is_some) && !moved(nominal, &points[row]).is_empty();
         let mut rows: Vec<usize> = (0..points.len()).filter(usable).collect();
@@ -236,7 +242,7 @@ impl Answers {
 /// Number of replays of so many answers: the given number, or else the usual part.
 pub(super) fn most_replays(answers: usize, given: Option<usize>) -> usize {
     let part = (PART * answers as f64).ceil() as usize;
-    given.unwrap_or((part.max(LEAST) + RANDOM).min(MOST))
+    given.unwrap_or(part.max(LEAST + RANDOM).min(MOST))
 }
 
 struct Axis {

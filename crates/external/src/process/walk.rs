@@ -118,7 +118,7 @@ impl Pool {
     ) -> Option<Vec<Walked>> {
         let mut walks = Walks::new(targets.len());
         let mut lanes = self.lanes(targets.len());
-        self.end_children(lanes.iter().map(|lane| lane.slot).collect());
+        self.end_used_children(lanes.iter().map(|lane| lane.slot));
         while !walks.open.is_empty() {
             // One walk in every lane. All walks of a route have about the same length, so lanes hardly wait for each other.
             let count = lanes.len().min(walks.open.len());
@@ -143,7 +143,7 @@ impl Pool {
             for lane in &mut lanes {
                 lane.used &= !renewed.contains(&lane.slot);
             }
-            self.end_children(renewed);
+            self.end_used_children(renewed);
             if walks.truth.is_none() {
                 // No child can be started any more.
                 return Some(vec![Walked::Lost; targets.len()]);

@@ -463,7 +463,7 @@ pub(crate) struct ModelEntry {
     #[cfg_attr(feature = "schema", schemars(extend("default" = registry::program().retries)))]
     pub(crate) retries: Option<Spanned<u64>>,
     /// Number of answers that are repeated in a fresh process, because they may depend on earlier points; 0 for none. By default 5 %, at
-    /// least 5, and 2 more, up to 59.
+    /// least 7 and at most 59.
     pub(crate) verify: Option<Spanned<u64>>,
     /// Files that the model depends on, relative to the study's folder: with other contents nothing kept in the journal is used.
     pub(crate) files: Option<Vec<Spanned<String>>>,

@@ -8,7 +8,7 @@ use super::super::protocol::Line;
 use super::super::sentinel::{SENTINEL, is_flip, values};
 use super::super::worker::Sent;
 use super::{Pool, State};
-use sensitol::assembly::{ProcessError, ProcessFault};
+use sensitol::assembly::{ProcessError, ProcessFault, StderrTail};
 
 impl Pool {
     /// An answer, or something that should have been one.
@@ -83,12 +83,26 @@ impl Pool {
         (self.failed_starts, self.unused) = (0, 0);
         let values = values(&line, expected);
         if row == SENTINEL {
+            self.note_sentinel(&line, &values);
             return self.checked(index, values, batch);
         }
         self.reference.learn(&values);
         if let Some(batch) = batch {
             self.settle_answer(index, row, (line, values), batch);
         }
+    }
+
+    /// Notes the outcome of the nominal point, until some point has a value.
+    fn note_sentinel(&mut self, line: &Line, values: &[Option<f64>]) {
+        if self.futility.is_ruled_out() {
+            return;
+        }
+        if values.iter().any(Option::is_some) {
+            return self.futility.note_value();
+        }
+        let message = line.error.clone().or_else(|| line.errors.values().next().cloned());
+        let fault = ProcessFault::NoValue { message: message.unwrap_or_else(|| "the model returned null".to_owned()) };
+        self.futility.note_failure(true, &ProcessError { fault, stderr: StderrTail::default() });
     }
 
     /// Settles a row of the batch, or sends it again where the program requests that.
