@@ -292,6 +292,16 @@ fn a_nearly_singular_position_warns() {
     assert!(near && message.contains("condition number"), "{message}");
 }
 
+/// Ten parts on each other are held as firmly as two: a chain has no dead centre, however long it is.
+#[test]
+fn a_chain_of_parts_is_not_nearly_singular() {
+    for parts in [2, 10, 30] {
+        let analysis = analyze(&study(&sequence(parts)).problem, &Method::Rss.into()).unwrap();
+        let codes: Vec<&str> = analysis.warnings.iter().map(|warning| warning.code()).collect();
+        assert!(!codes.contains(&"near-singular"), "{parts} parts: {codes:?}");
+    }
+}
+
 #[test]
 fn a_singular_nominal_position_is_an_error() {
     let text = "[dimensions]\na = { nominal = 1, tolerance = 0.1 }\n[unknowns]\nu = 1\nv = 1\n[equations]\none = \"u + v - 2*a\"\n\

@@ -12,7 +12,7 @@ pub(in crate::assembly) struct Anchor {
     pub(super) sign: f64,
     /// Derivatives of the unknowns by the variables that the conditions use, 0 if one does not exist. They serve predictions only.
     pub(super) slopes: Mat<f64>,
-    /// Condition number of the scaled Jacobian.
+    /// Condition number of the worst block of the scaled Jacobian.
     pub(super) condition: f64,
     /// Index of the unknown that is determined least.
     pub(super) weakest: usize,

@@ -8,6 +8,7 @@ use crate::assembly::SwitchKind;
 use crate::assembly::formula::FormulaSet;
 use crate::assembly::implicit::anchor::{Anchor, OFF, SLACK, STEPS};
 use crate::assembly::implicit::batch::BatchSolver;
+use crate::assembly::implicit::conditioning::ConditionNumber;
 use crate::assembly::implicit::conditions::Conditions;
 use crate::assembly::implicit::error::AssemblyFailure;
 use crate::assembly::implicit::newton::{Root, Search, Stuck};
@@ -108,8 +109,8 @@ impl Assembler {
         let stuck = || Stuck { u: root.u.clone(), values: system.values(&given, &root.u), singular: true };
         let singular = || self.failure(set, &search, stuck(), None, None);
         let linear = search.linear(&root.u).ok_or_else(singular)?;
-        let condition = linear.condition();
-        if condition.number.is_nan() || condition.number >= SINGULAR {
+        let condition = ConditionNumber::of(linear.matrix());
+        if condition.value >= SINGULAR {
             return Err(singular());
         }
         // Derivatives by the given variables, for the predictions at other points.
@@ -129,7 +130,7 @@ impl Assembler {
             given,
             scales,
             slopes,
-            condition: condition.number,
+            condition: condition.value,
             weakest: condition.unknown,
             bends: set.switches(&system.formulas).iter().any(|switch| switch.kind == SwitchKind::Branch),
         })
@@ -255,7 +256,7 @@ impl Assembler {
         let nominal = followed.is_none();
         let bound = system.unknowns.iter().zip(&stuck.u).find(|(unknown, value)| unknown.bounds().contains(value));
         if stuck.singular && bound.is_none() {
-            let condition = search.linear(&stuck.u).map(|linear| linear.condition());
+            let condition = search.linear(&stuck.u).map(|linear| ConditionNumber::of(linear.matrix()));
             let (unknown, worst) = condition.map_or((0, 0), |condition| (condition.unknown, condition.equation));
             return AssemblyFailure::Singular {
                 nominal,

@@ -1,4 +1,4 @@
-//! Small square systems: solution, sign of the determinant, condition.
+//! Small square systems: solution and sign of the determinant.
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::prelude::*;
@@ -11,16 +11,6 @@ pub(super) struct Linear {
 
 /// Smallest singular value, as part of the largest, of a direction that a step includes.
 const LEAST: f64 = 1e-8;
-
-/// Condition of a matrix, and the unknown and equation that it determines least.
-pub(super) struct Condition {
-    /// Ratio of the largest to the smallest singular value.
-    pub(super) number: f64,
-    /// Unknown that is determined least.
-    pub(super) unknown: usize,
-    /// Equation that should determine it.
-    pub(super) equation: usize,
-}
 
 impl Linear {
     /// Factorises a matrix. Returns None if an entry is not finite.
@@ -74,19 +64,8 @@ impl Linear {
         sign
     }
 
-    pub(super) fn condition(&self) -> Condition {
-        let n = self.matrix.nrows();
-        let Ok(svd) = self.matrix.svd() else {
-            return Condition { number: f64::INFINITY, unknown: 0, equation: 0 };
-        };
-        let largest = |column: &dyn Fn(usize) -> f64| {
-            (0..n).max_by(|&a, &b| column(a).abs().total_cmp(&column(b).abs())).unwrap_or(0)
-        };
-        let s = svd.S().column_vector();
-        Condition {
-            number: s[0] / s[n - 1],
-            unknown: largest(&|j| svd.V()[(j, n - 1)]),
-            equation: largest(&|i| svd.U()[(i, n - 1)]),
-        }
+    /// Returns the matrix itself.
+    pub(super) fn matrix(&self) -> &Mat<f64> {
+        &self.matrix
     }
 }

@@ -22,6 +22,7 @@
 mod anchor;
 mod assembler;
 mod batch;
+mod conditioning;
 mod conditions;
 mod derivatives;
 mod elimination;
