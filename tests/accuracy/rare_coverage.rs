@@ -103,7 +103,7 @@ impl Case {
             let below = found.characteristics[0].below.as_ref().unwrap();
             let [low, high] = below.interval;
             held += usize::from(low <= truth && truth <= high);
-            let value = below.probability.map_or(0.0, |probability| probability.value);
+            let value = below.probability.unwrap_or(0.0);
             square += (value / truth - 1.0).powi(2) / 40.0;
         }
         (held, square.sqrt())
@@ -157,8 +157,7 @@ fn a_hundred_variables_are_no_worse_than_plain_points() {
         };
         let found: Vec<_> = (0..20).into_par_iter().map(one).collect();
         let evaluations = found[0].0 as f64;
-        let square =
-            |above: &Beyond| (above.probability.map_or(0.0, |probability| probability.value) - truth).powi(2) / 20.0;
+        let square = |above: &Beyond| (above.probability.unwrap_or(0.0) - truth).powi(2) / 20.0;
         let error = found.iter().map(|(_, above)| square(above)).sum::<f64>().sqrt();
         // The root mean square of 20 runs is uncertain by 1/sqrt(40), a sixth. The limit allows two of that, and the evaluations of the
         // search for places.

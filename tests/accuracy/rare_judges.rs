@@ -264,7 +264,7 @@ fn intervals_hold_whatever_the_limit_looks_like() {
 fn many_points_find_all_regions() {
     for case in judges() {
         let found = case.found(10_000, SEEDS);
-        let value = median(&found, case.truth, |above| above.probability.map_or(0.0, |found| found.value));
+        let value = median(&found, case.truth, |above| above.probability.unwrap_or(0.0));
         let held = held(&found, case.truth);
         assert!(held >= HELD && (value - 1.0).abs() < 0.05, "{}: {held} {value}", case.name);
     }

@@ -116,7 +116,7 @@ fn intervals_reach_what_the_surrogate_gives_no_sign_of() {
 fn rejects_in_a_corner_are_found() {
     for case in judges() {
         let found = case.found(4000, 9);
-        let value = |above: &Beyond| above.probability.map_or(0.0, |found| found.value);
+        let value = |above: &Beyond| above.probability.unwrap_or(0.0);
         let mut values: Vec<f64> = found.iter().map(|(_, above)| value(above)).collect();
         values.sort_by(f64::total_cmp);
         assert!((values[4] / case.truth - 1.0).abs() < 0.25, "{}: {values:?} for {}", case.name, case.truth);
@@ -131,7 +131,7 @@ fn a_sum_of_a_hundred_is_better_than_plain_points() {
         let found = case.found(samples, 10);
         for (evaluations, above) in &found {
             let plain = (case.truth / *evaluations as f64).sqrt();
-            let value = above.probability.unwrap().value;
+            let value = above.probability.unwrap();
             assert!((value - case.truth).abs() < plain, "{samples}: {value}");
             assert!(above.interval[1] < 5.0 / samples as f64, "{samples}: {:?}", above.interval);
         }
@@ -144,7 +144,7 @@ fn the_bound_is_in_the_interval() {
     let case = judges().into_iter().find(|case| case.name == "linear-5").unwrap();
     let [few, many] = [400, 4000].map(|samples| case.found(samples, 1).remove(0).1);
     let (first, second) = (few.unmet.unwrap(), many.unmet.unwrap());
-    assert!(few.interval[1] >= few.probability.unwrap().value + first.most, "{few:?}");
+    assert!(few.interval[1] >= few.probability.unwrap() + first.most, "{few:?}");
     assert!(second.most < 1e-3 * first.most && second.points > 5 * first.points, "{first:?} {second:?}");
     assert_eq!((first.directions, second.directions), (3, 3));
     // The points are counted: at most a third of the budget of few.

@@ -144,8 +144,8 @@ fn the_reduction_is_that_of_the_plain_sample() {
     let (with, without) = (&with.characteristics[0], &without.characteristics[0]);
     let control = with.control.unwrap();
     let error = |estimate: Option<Estimate>| estimate.unwrap().standard_error.unwrap();
-    assert_eq!(control.mean.unwrap(), error(without.mean) / error(with.mean));
-    assert_eq!(control.sigma.unwrap(), error(without.sigma) / error(with.sigma));
+    assert_eq!(control.reduction.mean.unwrap(), error(without.mean) / error(with.mean));
+    assert_eq!(control.reduction.sigma.unwrap(), error(without.sigma) / error(with.sigma));
     assert_eq!((control.method, without.control), (Method::Full, None));
     // Figures that the surrogate does not estimate stay as they are.
     assert_eq!((with.quantiles, &with.histogram, with.range), (without.quantiles, &without.histogram, without.range));

@@ -395,7 +395,7 @@ fn wrong(found: &CharacteristicAnalysis, truth: &Truth) -> Option<String> {
 }
 
 fn is_exact(found: &CharacteristicAnalysis) -> bool {
-    found.evidence.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact { .. }))
+    found.evidence.verification.as_ref().is_some_and(|of| matches!(of.kind, VerificationKind::Exact))
 }
 
 /// Budget of the analyses. It allows a dozen check points and no sample, because figures that are not proven need no accuracy here.

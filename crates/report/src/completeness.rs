@@ -110,7 +110,7 @@ fn an_analysis_is_all_in_its_report() {
     complete!(json, &found => Analysis {
         method: "/method", varying: "/varying", run: "/evaluations", characteristics: "/characteristics/0",
         joint: "/joint_yield", joint_interval: "/joint_yield_interval", joint_requirement: "/joint_requirement",
-        correlations: "/characteristic_correlation", account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
+        correlations: "/characteristic_correlation", account: "/account", derivatives: "/derivatives", basis: "/basis", surface: "", warnings: "/warnings",
     });
     characteristic(json.pointer("/characteristics/0").unwrap(), &found.characteristics[0]);
 }
@@ -143,7 +143,7 @@ fn samples_are_all_in_their_reports() {
     });
     let above = one.pointer("/above").unwrap();
     complete!(above, found.characteristics[0].above.as_ref().unwrap() => Beyond {
-        limit: "/limit", probability: "/probability", interval: "/interval", bounds: "/bounds", hits: "/hits",
+        limit: "/limit", probability: "/probability", standard_error: "/standard_error", ppm: "/ppm", interval: "/interval", bounds: "/bounds", hits: "/hits",
         effective_samples: "/effective_samples", greatest_part: "/greatest_part", plain_samples: "/plain_samples",
         design_point: "/design_point", unmet: "/unmet", plain_points: "",
     });

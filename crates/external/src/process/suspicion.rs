@@ -242,7 +242,7 @@ impl Answers {
 /// Number of replays of so many answers: the given number, or else the usual part.
 pub(super) fn most_replays(answers: usize, given: Option<usize>) -> usize {
     let part = (PART * answers as f64).ceil() as usize;
-    given.unwrap_or(part.max(LEAST + RANDOM).min(MOST))
+    given.unwrap_or(part.clamp(LEAST + RANDOM, MOST))
 }
 
 struct Axis {
