@@ -21,6 +21,7 @@ pub(crate) use crate::analysis::distribution::surface_law::{law_over, surface_la
 use crate::analysis::distribution::yield_selection;
 pub use crate::analysis::evaluation_summary::Account;
 pub use crate::analysis::result::characteristic::{CharacteristicAnalysis, MissingPoints, Sensitivity};
+pub use crate::analysis::result::conclusion::CharacteristicConclusion;
 pub use crate::analysis::result::contribution_figures::ContributionFigures;
 pub use crate::analysis::result::coverage_intervals::CoverageIntervals;
 pub use crate::analysis::result::distribution_figures::DistributionFigures;
@@ -34,7 +35,6 @@ pub use crate::analysis::result::quantile_estimates::QuantileEstimates;
 pub use crate::analysis::result::range_figures::{LinearFigures, RangeFigures};
 pub use crate::analysis::result::sampled_model::SampledModel;
 pub use crate::analysis::result::sampled_tail::SampledTail;
-pub use crate::analysis::result::serialisation::CharacteristicConclusion;
 pub use crate::analysis::result::sobol_indices::{FactorIndices, IndexSource, SobolIndices};
 use crate::analysis::result::stage_figures::with_stage;
 pub(crate) use crate::analysis::result::verification::TRUSTED;

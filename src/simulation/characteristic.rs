@@ -7,6 +7,8 @@ use crate::estimate::ConditionalYield;
 use crate::extremes::keeps_by_proof;
 use crate::method::Method;
 use crate::problem::Problem;
+#[cfg(feature = "schema")]
+use crate::simulation::conclusion::SimulatedConclusion;
 use crate::simulation::control_variate::Twin;
 use crate::simulation::count::{Count, Replicate};
 use crate::simulation::indices::SampledFactor;
@@ -14,8 +16,6 @@ use crate::simulation::inspection::inspected;
 use crate::simulation::rare_switch_side::RareSwitchSides;
 use crate::simulation::replicate_error::of_replicates;
 use crate::simulation::replicate_moments::{moments, pooled, quantile};
-#[cfg(feature = "schema")]
-use crate::simulation::serialisation::SimulatedConclusion;
 use crate::simulation::surface_difference::{
     Controlled, Difference, Shares, carried, largest, moments as controlled, shares,
 };

@@ -1,6 +1,7 @@
 //! Monte Carlo simulation: the assembly function at points of the inputs' distribution, with standard errors.
 
 mod characteristic;
+mod conclusion;
 mod control_variate;
 mod count;
 mod indices;
@@ -19,7 +20,7 @@ mod surface_difference;
 mod surrogates;
 mod tally;
 
-pub use crate::simulation::serialisation::SimulatedConclusion;
+pub use crate::simulation::conclusion::SimulatedConclusion;
 
 pub(crate) use characteristic::{BINS, CHOICE};
 pub use characteristic::{Histogram, Reduction, SimulatedCharacteristic, SurrogateControl, YieldEstimate};

@@ -40,13 +40,13 @@ macro_rules! serialize_with_conclusion {
     ($result:ty) => {
         impl serde::Serialize for $result {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                struct Own<'r>(&'r $result);
-                impl serde::Serialize for Own<'_> {
+                struct OwnFields<'r>(&'r $result);
+                impl serde::Serialize for OwnFields<'_> {
                     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                         <$result>::serialize(self.0, serializer)
                     }
                 }
-                let whole = $crate::json_form::Concluded::new(Own(self), self.conclusion());
+                let whole = $crate::json_form::Concluded::new(OwnFields(self), self.conclusion());
                 serde::Serialize::serialize(&whole, serializer)
             }
         }

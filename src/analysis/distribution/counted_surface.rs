@@ -46,7 +46,7 @@ pub(in crate::analysis) fn points(
     let affordable = if most < POINTS { (EFFORT / terms.max(1)).max(ROWS) } else { numbers };
     let count = numbers.min(affordable) / ROWS * ROWS;
     // In blocks, so that ten thousand inputs take no more memory than ten.
-    let rows = (TOGETHER / varying.len().max(1)).clamp(FEWEST_TOGETHER, ROWS);
+    let rows = block_rows(varying.len());
     let values = |block: usize| -> Option<Vec<f64>> {
         let first = block * rows;
         let points = draws.points(Portion { replicate: 0, first: first as u64, rows: rows.min(count - first) });
@@ -60,4 +60,22 @@ pub(in crate::analysis) fn points(
         values.iter_mut().zip(beside.first()?).for_each(|(y, z)| *y += sigma * z);
     }
     Some(OrderedPoints::new(values))
+}
+
+/// Number of points of a block: a power of two, as blocks of a Sobol' sequence need it.
+fn block_rows(inputs: usize) -> usize {
+    1 << (TOGETHER / inputs.max(1)).clamp(FEWEST_TOGETHER, ROWS).ilog2()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FEWEST_TOGETHER, ROWS, block_rows};
+
+    #[test]
+    fn blocks_are_powers_of_two_at_any_number_of_inputs() {
+        for inputs in (0..20_000).chain([1 << 20, usize::MAX]) {
+            let rows = block_rows(inputs);
+            assert!(rows.is_power_of_two() && (FEWEST_TOGETHER..=ROWS).contains(&rows), "{inputs}: {rows}");
+        }
+    }
 }

@@ -2,14 +2,14 @@
 
 use serde::Serialize;
 
+#[cfg(feature = "schema")]
+use crate::analysis::result::conclusion::CharacteristicConclusion;
 use crate::analysis::result::contribution_figures::ContributionFigures;
 use crate::analysis::result::distribution_figures::DistributionFigures;
 use crate::analysis::result::evidence::Evidence;
 use crate::analysis::result::interaction_listing::{dimensions_of, mixed_of, pairs_of, share_of};
 use crate::analysis::result::linear::Linear;
 use crate::analysis::result::range_figures::{LinearFigures, RangeFigures};
-#[cfg(feature = "schema")]
-use crate::analysis::result::serialisation::CharacteristicConclusion;
 use crate::analysis::result::variance_share::Shares;
 use crate::analysis::result::yield_error::of_yield;
 use crate::analysis::{InteractionList, VerificationKind};

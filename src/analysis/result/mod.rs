@@ -1,6 +1,7 @@
 //! Results of an analysis: figures of a characteristic, sensitivities, interactions, and their written form.
 
 pub(in crate::analysis) mod characteristic;
+pub(in crate::analysis) mod conclusion;
 pub(in crate::analysis) mod contribution_figures;
 pub(in crate::analysis) mod coverage_intervals;
 pub(in crate::analysis) mod distribution_figures;

@@ -209,11 +209,7 @@ fn sample(
         lost_share: None,
         valid: Some(found.valid),
         left: open,
-        figures: VerifiedFigures {
-            moments: [found.mean, found.sigma, found.skewness, found.kurtosis],
-            yield_: found.yield_,
-            beyond: found.beyond,
-        },
+        figures: sampled_figures(&found),
         point: found.point,
         difference: found.difference,
         switches: found.switches.filter(|found| {
@@ -227,6 +223,12 @@ fn sample(
         sample: found.sample.filter(|_| is_kept(one, options, open)).map(Arc::new),
     };
     Some((spent, Some(VerificationFigures::complete(replacement, error_estimate, verification))))
+}
+
+/// Figures of the model itself.
+fn sampled_figures(found: &SampledFigures) -> VerifiedFigures {
+    let moments = [found.mean, found.sigma, found.skewness, found.kurtosis];
+    VerifiedFigures { moments, yield_: found.yield_, beyond: found.beyond }
 }
 
 /// Quantiles of a sample at the probabilities of reports. None if nothing varies: a single value is no sample of a distribution.
