@@ -160,6 +160,20 @@ pub enum ImportProblem {
         /// Header of the nominal value.
         nominal: String,
     },
+    /// A class of ISO 286 beside a nominal value without a unit.
+    #[error("the class {class} of ISO 286 is one of millimetres, and `{nominal}` has no unit")]
+    ClassWithoutUnit {
+        /// The class.
+        class: String,
+        /// Header of the nominal value.
+        nominal: String,
+    },
+    /// A row with headers of which none is that of the nominal value.
+    #[error("no column holds the nominal value; the headers of this row are {}", quoted(headers))]
+    NoNominal {
+        /// Headers of the row.
+        headers: Vec<String>,
+    },
     /// Columns of numbers without a meaning here.
     #[error("{} no known meaning: {}", if headers.len() == 1 { "a column of numbers has" } else { "columns of numbers have" }, quoted(headers))]
     Numbers {
@@ -260,7 +274,9 @@ impl ImportProblem {
             Self::Percent { .. } => "percent of the nominal value belongs into the column of tolerances".to_owned(),
             Self::TwoMarks { .. } => "write all numbers of the table alike".to_owned(),
             Self::NoName => "write a name, or leave the nominal value of a total empty".to_owned(),
-            Self::NoTolerance { .. } => "write 0.1, ±0.1, +0.1/-0.05, 2 % or a class such as H7".to_owned(),
+            Self::NoTolerance { .. } => {
+                "write 0.1, ±0.1, +0.1/-0.05, 2 % or a class such as H7; a unit belongs into the header".to_owned()
+            }
             Self::ToleranceTwice { .. } => "leave one of them empty".to_owned(),
             Self::OneDeviation => "write 0 for the one that does not exist".to_owned(),
             Self::Unknown { known, .. } => format!("write {known}"),
@@ -297,6 +313,8 @@ impl ImportProblem {
                 | Self::NominalOutside { .. }
                 | Self::TwoUnits { .. }
                 | Self::UnitAlone { .. }
+                | Self::ClassWithoutUnit { .. }
+                | Self::NoNominal { .. }
                 | Self::Numbers { .. }
                 | Self::NumbersWithoutHeader
         )
@@ -311,6 +329,8 @@ impl ImportProblem {
             Self::LimitsOrDeviations { .. } => "say which: limits, deviations with their signs, or without".to_owned(),
             Self::NominalOutside { .. } => "correct it, or say that these are deviations".to_owned(),
             Self::TwoUnits { .. } => "write units of one kind, such as mm and µm, and one for each number".to_owned(),
+            Self::ClassWithoutUnit { nominal, .. } => format!("write the unit in its header: {nominal} [mm]"),
+            Self::NoNominal { .. } => "write a column Nominal, in German Nennmaß".to_owned(),
             Self::UnitAlone { nominal, .. } => format!("write its unit in its header too: {nominal} [mm]"),
             Self::Numbers { .. } => {
                 format!(
@@ -318,7 +338,10 @@ impl ImportProblem {
                     ROLES.map(|(_, name, _)| name).join(", ")
                 )
             }
-            Self::NumbersWithoutHeader => "write a header above it, or remove the column".to_owned(),
+            Self::NumbersWithoutHeader => {
+                "write a header above it, or remove the column; decimal commas need semicolons between columns"
+                    .to_owned()
+            }
             _ => return None,
         })
     }

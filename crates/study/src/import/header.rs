@@ -1,6 +1,6 @@
 //! Header row of a table: columns by their roles, with the units that stand in it.
 
-use crate::import::columns::{ColumnRole, Heading, LABELLED, NAMES, heading, plain, rank, role_name};
+use crate::import::columns::{ColumnRole, Heading, LABELLED, NAMES, heading, plain, rank, role_name, unit_of};
 use crate::import::fault::{ImportFault, ImportProblem};
 use crate::import::sheet::{Content, Sheet, address};
 use crate::import::tolerance::{Written, is_number, written};
@@ -34,6 +34,8 @@ pub(super) struct Header {
     unknown: Vec<(usize, String)>,
     /// Index of the header in the sheet.
     pub(super) place: usize,
+    /// Index of the first row below the header, which may have two rows.
+    pub(super) end: usize,
 }
 
 impl Header {
@@ -144,10 +146,19 @@ pub(super) fn header(sheet: &Sheet, given: &[(ColumnRole, String)]) -> Result<He
     let found = sheet.rows.iter().take(HEADER).position(|(_, row)| {
         holds(row, ColumnRole::Nominal, given) && NAMES.iter().any(|role| holds(row, *role, given))
     });
-    let Some(place) = found else { return Err(none(no_header(sheet, given))) };
+    let Some(place) = found else {
+        // `Maß` and `dimension` head the names of some tables, and the nominal values of others.
+        return match nominal_by_numbers(sheet, given) {
+            Some(nominal) => header(sheet, &[given, &[(ColumnRole::Nominal, nominal)]].concat()),
+            None => Err(none(no_header(sheet, given))),
+        };
+    };
     let (line, content) = &sheet.rows[place];
-    let mut header =
-        Header { row: *line, columns: Vec::new(), either: false, name: ColumnRole::Name, unknown: Vec::new(), place };
+    let both = two_rows(content, sheet.rows.get(place + 1).map(|(_, row)| row.as_slice()));
+    let end = place + 1 + usize::from(both.is_some());
+    let content = both.as_ref().unwrap_or(content);
+    let (columns, unknown) = (Vec::new(), Vec::new());
+    let mut header = Header { row: *line, columns, either: false, name: ColumnRole::Name, unknown, place, end };
     let mut sign_or_band = None;
     for (place, cell) in content.iter().enumerate() {
         let Content::Text(text) = cell else { continue };
@@ -183,12 +194,59 @@ pub(super) fn header(sheet: &Sheet, given: &[(ColumnRole, String)]) -> Result<He
     Ok(header)
 }
 
+/// Header of two rows in one: units below the header, or parts of a header, such as plus and minus below `Tolerance`. Returns None if the second
+/// row is another one.
+fn two_rows(first: &[Content], second: Option<&[Content]>) -> Option<Vec<Content>> {
+    let second = second.filter(|row| row.iter().any(|cell| *cell != Content::Empty))?;
+    let width = first.len().max(second.len());
+    let joined = |place: usize| {
+        let above = first.get(place).unwrap_or(&Content::Empty);
+        let text = match second.get(place) {
+            None | Some(Content::Empty) => return Some(above.clone()),
+            Some(Content::Text(text)) => text,
+            Some(_) => return None,
+        };
+        let role = heading(above);
+        let is_name = matches!(role, Some((Heading::Role(role), _)) if NAMES.contains(&role));
+        let unit = unit_of(text.trim_matches(['[', ']', '(', ')']));
+        match (role, unit) {
+            (Some((_, None)), Some(unit)) if !is_name => {
+                Some(Content::Text(format!("{} [{unit}]", above.words().unwrap_or_default())))
+            }
+            _ if is_name => None,
+            _ => heading(&second[place]).map(|_| second[place].clone()),
+        }
+    };
+    (0..width).map(joined).collect()
+}
+
+/// Header of the nominal values if it is one that heads names elsewhere, beside another column of names and above numbers alone.
+fn nominal_by_numbers(sheet: &Sheet, given: &[(ColumnRole, String)]) -> Option<String> {
+    /// Headers of names that head nominal values too.
+    const EITHER: [&str; 4] = ["mass", "masz", "dimension", "size"];
+    if given.iter().any(|(role, _)| *role == ColumnRole::Nominal) {
+        return None;
+    }
+    sheet.rows.iter().take(HEADER).enumerate().find_map(|(place, (_, row))| {
+        let of = |column: usize| sheet.rows.iter().skip(place + 1).filter_map(move |(_, row)| row.get(column));
+        let is_nominal = |column: &usize| {
+            let Some(Content::Text(text)) = row.get(*column) else { return false };
+            let mut cells = of(*column).filter(|cell| **cell != Content::Empty).peekable();
+            EITHER.contains(&plain(text).as_str()) && cells.peek().is_some() && cells.all(is_figure)
+        };
+        let column = (0..row.len()).find(is_nominal)?;
+        let others = row.iter().enumerate().filter(|(other, _)| *other != column);
+        let is_name = |cell: &Content| matches!(heading(cell), Some((Heading::Role(role), _)) if NAMES.contains(&role));
+        others.into_iter().any(|(_, cell)| is_name(cell)).then(|| row[column].words()).flatten()
+    })
+}
+
 /// Leaves out a column `id` of numbers where another column names the dimensions.
 fn leave_out_numbers_of_rows(header: &mut Header, rows: &[(u64, Vec<Content>)]) {
     let other = |column: &Column| NAMES.contains(&column.role) && column.role != ColumnRole::Name;
     let has_other = header.columns.iter().any(other);
     let Some(column) = header.columns.iter_mut().find(|column| column.role == ColumnRole::Name) else { return };
-    let mut cells = rows.iter().skip(header.place + 1).filter_map(|(_, row)| row.get(column.place));
+    let mut cells = rows.iter().skip(header.end).filter_map(|(_, row)| row.get(column.place));
     let numbers = cells.all(|cell| *cell == Content::Empty || is_figure(cell));
     if has_other && !column.given && plain(&column.header) == "id" && numbers {
         column.role = ColumnRole::Ignore;
@@ -215,8 +273,18 @@ fn no_header(sheet: &Sheet, given: &[(ColumnRole, String)]) -> ImportProblem {
         Content::Text(text) => Some(text.clone()),
         _ => None,
     });
-    match given.iter().find(|(_, header)| !stands(header)) {
-        Some((_, header)) => ImportProblem::NoColumn { header: header.clone(), known: known.collect() },
+    if let Some((_, header)) = given.iter().find(|(_, header)| !stands(header)) {
+        return ImportProblem::NoColumn { header: header.clone(), known: known.collect() };
+    }
+    // A row with a name and figures lacks only the nominal value.
+    let is = |cell: &Content, name: bool| match heading(cell) {
+        Some((Heading::Role(role), _)) => NAMES.contains(&role) == name,
+        Some(_) => !name,
+        None => false,
+    };
+    let lacks = |row: &&Vec<Content>| [true, false].iter().all(|name| row.iter().any(|cell| is(cell, *name)));
+    match sheet.rows.iter().take(HEADER).map(|(_, row)| row).find(lacks) {
+        Some(row) => ImportProblem::NoNominal { headers: row.iter().filter_map(Content::words).collect() },
         None => ImportProblem::NoHeader,
     }
 }
@@ -245,7 +313,7 @@ fn add(header: &mut Header, column: Column) -> Result<(), ImportFault> {
 /// Role of a column with the header `+/-`: the direction, unless another column has it or a cell holds something else.
 fn sign_or_band_role(header: &Header, rows: &[(u64, Vec<Content>)], place: usize) -> ColumnRole {
     let has = |role: ColumnRole| header.columns.iter().any(|column| column.role == role);
-    let below = rows.iter().skip(header.place + 1).filter_map(|(_, row)| row.get(place)?.words());
+    let below = rows.iter().skip(header.end).filter_map(|(_, row)| row.get(place)?.words());
     let mut words = below.peekable();
     let signs = words.peek().is_some() && words.all(|word| direction(&word).is_some());
     match signs && !has(ColumnRole::Direction) && !has(ColumnRole::Factor) {

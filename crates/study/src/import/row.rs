@@ -7,7 +7,7 @@ use crate::import::header::Header;
 use crate::import::sheet::{Content, address};
 use crate::import::spread::{Band, band};
 use crate::import::units::Scales;
-use crate::import::words::{KNOWN_DIRECTIONS, KNOWN_DISTRIBUTIONS, direction, distribution};
+use crate::import::words::{KNOWN_DIRECTIONS, KNOWN_DISTRIBUTIONS, direction, distribution, is_subtotal, is_total};
 
 /// Dimension of a row. Its numbers are indices into [`Figures`].
 #[derive(Debug)]
@@ -47,9 +47,11 @@ pub(super) fn words(content: &[Content]) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Name of a dimension in a row. Returns None if the cell has no words. A backquote ends a name in formulas, so it is replaced.
+/// Name of a dimension in a row. Returns None if the cell has no words, unless another cell names a total. A backquote ends a name in
+/// formulas, so it is replaced.
 pub(super) fn name(header: &Header, content: &[Content]) -> Option<String> {
-    let name = header.of(ColumnRole::Name, content).words()?;
+    let total = || content.iter().filter_map(Content::words).find(|text| is_total(text) || is_subtotal(text));
+    let name = header.of(ColumnRole::Name, content).words().or_else(total)?;
     Some(name.replace('`', "'").split_whitespace().collect::<Vec<_>>().join(" "))
 }
 

@@ -1,5 +1,6 @@
 //! Cells of a sheet by row and column, with their names in a spreadsheet.
 
+use crate::import::header::has_header;
 use crate::table::{DELIMITERS, delimiter, records};
 
 /// Content of a cell.
@@ -50,10 +51,26 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Sheet of a text with tabs, semicolons or commas between the columns.
+    /// Sheet of a text with tabs, semicolons or commas between the columns. A first line `sep=;` of a spreadsheet names the separator and is no
+    /// row.
     pub fn of_text(text: &str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let delimiter = delimiter(text, DELIMITERS);
+        let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
+        let told = first.trim_end().strip_prefix("sep=").and_then(|mark| mark.bytes().next());
+        if let Some(told) = told.filter(|mark| DELIMITERS.contains(mark)) {
+            return Self::separated(rest, told);
+        }
+        // A title without separators stands above the header of some tables.
+        let found = Self::separated(text, delimiter(text, DELIMITERS));
+        if has_header(&found, &[]) {
+            return found;
+        }
+        let others = DELIMITERS.map(|mark| Self::separated(text, mark));
+        others.into_iter().find(|sheet| has_header(sheet, &[])).unwrap_or(found)
+    }
+
+    /// Sheet of a text with this delimiter.
+    fn separated(text: &str, delimiter: u8) -> Self {
         let content = |cell: &str| match cell.trim_matches([' ', '\u{a0}']) {
             "" => Content::Empty,
             text => Content::Text(text.to_owned()),

@@ -12,7 +12,7 @@ use crate::import::sheet::{Content, Sheet};
 use crate::import::spread::{Band, LimitReading, Spread, limit_reading, refuse_mixed_signs, same_limits, spread};
 use crate::import::study_text::{Part, Target, characteristics, dimensions, head, sum};
 use crate::import::title::TitleRows;
-use crate::import::words::{is_total, names_both_limits};
+use crate::import::words::{is_subtotal, is_total, names_both_limits};
 use sensitol_numeric::names::first_of;
 
 /// Greatest number of equal parts of a row: more are a typing error.
@@ -131,7 +131,7 @@ fn read(sheet: &Sheet, options: &ImportOptions) -> Result<Table, ImportFault> {
         }
     }
     let titles = TitleRows::of(&above);
-    let below = &sheet.rows[header.place + 1..];
+    let below = &sheet.rows[header.end..];
     let of_dimensions: Vec<&[Content]> =
         below.iter().map(|(_, row)| row.as_slice()).filter(|row| is_dimension(&header, row)).collect();
     header.refuse_numbers(&of_dimensions)?;
@@ -139,7 +139,12 @@ fn read(sheet: &Sheet, options: &ImportOptions) -> Result<Table, ImportFault> {
     if !left_out.is_empty() {
         notes.push(format!("columns without a meaning here were left out: {}", left_out.join(", ")));
     }
+    let own = &sheet.rows[header.place].1;
     for (line, content) in below {
+        if content == own {
+            notes.push(format!("row {line} repeats the header and was left out"));
+            continue;
+        }
         if !is_dimension(&header, content) && limits.read(&header, *line, content, &mut figures)? {
             continue;
         }
@@ -207,18 +212,46 @@ fn refuse_wide_sigma(row: &Row, spread: &Spread, values: &[f64], figures: &Figur
     Ok(())
 }
 
+/// Part of a row in the sum of all rows.
+fn addend(row: &Row, values: &[f64]) -> f64 {
+    let count = row.quantity.map_or(1.0, |place| values[place]);
+    count * row.sign * row.factor.map_or(1.0, |place| values[place]) * values[row.nominal]
+}
+
+/// Leaves out rows with the sum of the rows above, or of those since the last such row.
+fn take_out_subtotals(table: &mut Table, values: &[f64]) -> Result<(), ImportFault> {
+    let (mut sum, mut since, mut largest) = (0.0, 0.0, 0.0f64);
+    let mut left_out = Vec::new();
+    for row in &table.rows {
+        let value = values[row.nominal];
+        if !is_subtotal(&row.name) {
+            sum += addend(row, values);
+            since += addend(row, values);
+            largest = largest.max(value.abs());
+            continue;
+        }
+        let is = |of: f64| (value.abs() - of.abs()).abs() <= SUM_ERROR * largest;
+        if !is(sum) && !is(since) {
+            let problem = ImportProblem::NoSum { name: row.name.clone(), value, sum };
+            return Err(ImportFault::of(table.figures.cell(row.nominal), problem));
+        }
+        since = 0.0;
+        left_out.push(row.line);
+        table.notes.push(format!("row {} is a sum of rows above and was left out: {}", row.line, row.name));
+    }
+    table.rows.retain(|row| !left_out.contains(&row.line));
+    Ok(())
+}
+
 /// Leaves out the last rows if they hold the sum of the others.
 fn take_out_totals(table: &mut Table, values: &[f64]) -> Result<(), ImportFault> {
+    take_out_subtotals(table, values)?;
     while let Some((last, others)) = table.rows.split_last() {
         let has_sign = table.header.column(ColumnRole::Direction).is_some() && last.sign < 0.0;
         if others.is_empty() || !is_total(&last.name) || has_sign || last.quantity.is_some() {
             return Ok(());
         }
-        let factor = |row: &Row| {
-            let count = row.quantity.map_or(1.0, |place| values[place]);
-            count * row.sign * row.factor.map_or(1.0, |place| values[place])
-        };
-        let sum: f64 = others.iter().map(|row| factor(row) * values[row.nominal]).sum();
+        let sum: f64 = others.iter().map(|row| addend(row, values)).sum();
         let largest = others.iter().map(|row| values[row.nominal].abs()).fold(0.0, f64::max);
         let value = values[last.nominal];
         if (value.abs() - sum.abs()).abs() > SUM_ERROR * largest {
@@ -237,6 +270,11 @@ fn parts(table: &mut Table, values: &[f64], spreads: &[Spread]) -> Result<Vec<Pa
     let mut taken: HashMap<String, usize> = HashMap::new();
     let (mut parts, mut numbered, mut mirrored) = (Vec::new(), Vec::new(), Vec::new());
     for (row, spread) in table.rows.iter().zip(spreads) {
+        if let (Spread::Class(class), None) = (spread, &row.unit) {
+            let (class, nominal) = (class.clone(), table.header.text(ColumnRole::Nominal));
+            let problem = ImportProblem::ClassWithoutUnit { class, nominal };
+            return Err(ImportFault::of(table.header.cell(ColumnRole::Nominal, row.line), problem));
+        }
         let count = match row.quantity.map(|place| (values[place], place)) {
             None => 1,
             Some((value, _)) if value.fract() == 0.0 && (1.0..=MOST_EQUAL).contains(&value) => value as usize,

@@ -48,6 +48,8 @@ const TOTALS: [&str; 18] = [
     "clearance",
     "gap target",
 ];
+/// Names of rows that hold the sum of the rows above them, or of those since the last such row.
+const SUBTOTALS: [&str; 6] = ["subtotal", "sub total", "sub-total", "zwischensumme", "teilsumme", "partial sum"];
 /// Words before the lower limit of the characteristic.
 const LOWER_LIMIT: [&str; 13] = [
     "lower limit",
@@ -120,6 +122,11 @@ pub(super) fn distribution(word: &str) -> Option<&'static str> {
 pub(super) fn is_total(name: &str) -> bool {
     let name = plain(name);
     TOTALS.contains(&name.trim_end_matches([' ', '=']))
+}
+
+/// True for the name of a row with the sum of some rows above.
+pub(super) fn is_subtotal(name: &str) -> bool {
+    SUBTOTALS.contains(&plain(name).trim_end_matches([' ', '=']))
 }
 
 /// True for a name that is never one of a dimension: its row holds both limits of the characteristic.
