@@ -125,6 +125,8 @@ pub(super) enum Failure {
     NoTable { flag: &'static str, path: PathBuf },
     #[error("the format of the budget stands behind `=`: write --gum={format}")]
     GumFormat { format: &'static str },
+    #[error("{path}: -o writes text here; write {right}", path = path.display())]
+    OtherKind { path: PathBuf, right: String },
     #[error("the table cannot be written: {reason}")]
     Table { reason: String },
     #[error("{reason}")]

@@ -133,7 +133,8 @@ impl Failure {
                 "would-overwrite"
             }
             Self::AnotherFolder { .. } => "another-folder",
-            Self::NoTable { .. }
+            Self::OtherKind { .. }
+            | Self::NoTable { .. }
             | Self::GumFormat { .. }
             | Self::NotTwo { .. }
             | Self::NoFolder { .. }
@@ -153,6 +154,7 @@ impl Failure {
             Self::Points { path, .. }
             | Self::Import { path, .. }
             | Self::Shard { path, .. }
+            | Self::OtherKind { path, .. }
             | Self::NoTable { path, .. }
             | Self::Unwritable { path, .. }
             | Self::WrongPage { path, .. }

@@ -7,6 +7,7 @@ use crate::csv::CsvFolder;
 use crate::failure::Failure;
 use crate::output::Destination;
 use crate::own_file::{Content, is_free};
+use crate::values::ending;
 use sensitol_study::{FileRole, JournalPlace, Study};
 
 /// Paths that are read, and paths that will be written, with links resolved.
@@ -52,6 +53,19 @@ impl Files {
 
     /// Opens the file of `--output`, or returns stdout.
     pub(super) fn output(&mut self, asked: &OutputArgs) -> Result<Destination, Failure> {
+        if let Some(path) = &asked.output {
+            let file = path.display();
+            let right = match ending(path).as_str() {
+                "html" | "htm" => Some(format!("--html {file}")),
+                "pdf" => Some(format!("--pdf {file}")),
+                "xlsx" => Some(format!("--xlsx {file}")),
+                "json" if !asked.json => Some(format!("--json -o {file}")),
+                _ => None,
+            };
+            if let Some(right) = right {
+                return Err(Failure::OtherKind { path: path.clone(), right });
+            }
+        }
         self.output_of(asked, &Content::Report)
     }
 

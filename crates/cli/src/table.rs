@@ -151,7 +151,7 @@ fn refused(path: &Path, fault: &ImportFault) -> Failure {
 /// Options that end a fault. Returns None if there are none.
 fn options_of(problem: &ImportProblem) -> Option<String> {
     Some(match problem {
-        ImportProblem::NoHeader => "or --column nominal=HEADER".to_owned(),
+        ImportProblem::NoHeader | ImportProblem::NoNominal { .. } => "or --column nominal=HEADER".to_owned(),
         ImportProblem::Twice { role, .. } => format!("or --column {role}=HEADER"),
         ImportProblem::LimitsOrDeviations { upper, lower } => {
             let pair = |one: &str, other: &str| format!("--column {one}=\"{upper}\" --column {other}=\"{lower}\"");

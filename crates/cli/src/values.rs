@@ -1,6 +1,6 @@
 //! Parsers for values of options: numbers, ranges and words.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
@@ -81,11 +81,54 @@ pub(super) fn movable(text: &str) -> Result<Movable, String> {
 /// Path of a workbook that is written, or of a folder for several.
 pub(super) fn workbook(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-    match ["xls", "xlsm", "xlsb", "ods", "csv"].contains(&ending.as_str()) {
+    let ending = ending(&path);
+    match ["xls", "xlsm", "xlsb", "ods", "csv", "html", "pdf", "json", "txt", "toml"].contains(&ending.as_str()) {
         true => Err(format!("a workbook is written as .xlsx: write {}", path.with_extension("xlsx").display())),
         false => Ok(path),
     }
+}
+
+/// Endings of other files than pages, each with the option that writes one.
+const OTHER_ENDINGS: [(&str, &str); 9] = [
+    ("html", "--html"),
+    ("htm", "--html"),
+    ("pdf", "--pdf"),
+    ("json", "--json -o"),
+    ("xlsx", "--xlsx"),
+    ("txt", "-o"),
+    ("md", "-o"),
+    ("csv", "--csv DIR"),
+    ("toml", ""),
+];
+
+/// Path of a page in HTML, or of a folder for several.
+pub(super) fn html_file(text: &str) -> Result<PathBuf, String> {
+    page_file(text, "--html", "html")
+}
+
+/// Path of a printed page, or of a folder for several.
+pub(super) fn pdf_file(text: &str) -> Result<PathBuf, String> {
+    page_file(text, "--pdf", "pdf")
+}
+
+/// Path of a file of this ending. Fails with the right option if the ending is that of another kind.
+fn page_file(text: &str, option: &str, own: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let ending = ending(&path);
+    let other = OTHER_ENDINGS.iter().find(|(other, right)| *other == ending && *right != option);
+    let Some((_, right)) = other else { return Ok(path) };
+    let proper = path.with_extension(own);
+    let instead = match *right {
+        "" => String::new(),
+        "--csv DIR" => ", or --csv with a folder".to_owned(),
+        right => format!(", or {right} {text}"),
+    };
+    Err(format!("{option} writes a .{own}: write {option} {}{instead}", proper.display()))
+}
+
+/// Ending of a file in small letters.
+pub(super) fn ending(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase()
 }
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {

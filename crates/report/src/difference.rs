@@ -286,9 +286,9 @@ fn dimensions(old: &Report, new: &Report) -> Vec<Changed> {
         };
         differ("nominal", [one, other].map(|of| Some(plain(of.nominal))));
         differ("tolerance", [one, other].map(|of| of.tolerance.map(band)));
-        differ("distribution", [one, other].map(|of| of.distribution.map(str::to_owned)));
+        differ("distribution", [one, other].map(|of| of.kind().map(str::to_owned)));
         // A sigma that follows from a changed tolerance or distribution is not listed on its own.
-        if one.tolerance == other.tolerance && one.distribution == other.distribution {
+        if one.tolerance == other.tolerance && one.kind() == other.kind() {
             differ("sigma", [one, other].map(|of| Some(plain(of.sigma))));
             if one.nominal == other.nominal {
                 differ("mean", [one, other].map(|of| Some(plain(of.mean))));

@@ -117,6 +117,9 @@ pub struct DimensionReport {
     pub(crate) labels: Labels,
     /// Degrees of freedom of its standard uncertainty; null if the study gives none.
     pub degrees: Option<f64>,
+    /// True if only its band is known, so that its distribution stands in for any.
+    #[serde(skip)]
+    pub(crate) promised: bool,
 }
 
 /// A warning.
@@ -192,6 +195,11 @@ fn correlation(problem: &Problem) -> Vec<Pair> {
 }
 
 impl DimensionReport {
+    /// Distribution as the study names it: `any` if only the band is known.
+    pub(crate) fn kind(&self) -> Option<&'static str> {
+        if self.promised { Some("any") } else { self.distribution }
+    }
+
     fn of(dimension: &Dimension) -> Self {
         Self {
             name: dimension.name().to_owned(),
@@ -204,6 +212,7 @@ impl DimensionReport {
             sigma: dimension.sigma(),
             labels: dimension.labels().clone(),
             degrees: dimension.convention().degrees,
+            promised: dimension.convention().promise.is_some(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Uncertainty from the size of measured samples, for readers.
 
-use crate::document::number::{carried_ends, index, shape, share, short};
+use crate::document::number::{carried_ends, index, shape, share, short, yielded};
+use crate::document::rejects::Rejects;
 use crate::document::{Blocks, Cell, DataTable, Section};
 use sensitol_numeric::sampling::SamplingInterval;
 
@@ -14,6 +15,18 @@ pub(super) fn samples(interval: &SamplingInterval) -> String {
     let more = interval.samples.len().saturating_sub(SAMPLES);
     let more = if more > 0 { format!(" and {more} more samples") } else { String::new() };
     format!("{}{more}", named.join(", "))
+}
+
+/// Names of the indices of capability: of performance for measured values, of a process in control otherwise (ISO 22514-2).
+pub(crate) fn index_names(measured: bool) -> [&'static str; 2] {
+    if measured { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] }
+}
+
+/// Yield of measured values: the estimate, and the interval that the number of values leaves.
+pub(crate) fn measured_yield(value: f64, interval: [f64; 2], rejects: Rejects) -> String {
+    let text = rejects.yield_text().filter(|_| rejects.are_resolved()).unwrap_or_else(|| share(1.0 - value));
+    let [low, high] = interval.map(yielded);
+    format!("yield {text}, 95 % interval {low} to {high}")
 }
 
 /// Adds intervals, one a row, for a characteristic with sigma `scale`, those of yield and Cpk only if it is `limited`.
@@ -35,7 +48,7 @@ pub(super) fn sampled(section: &mut Section, interval: &SamplingInterval, scale:
     }
     if limited {
         let kept = interval.rejected.map(|[low, high]| [high, low]);
-        rows.extend([("yield", range(kept, &share)), ("Cpk", range(interval.cpk, &index))]);
+        rows.extend([("yield", range(kept, &share)), (index_names(true)[1], range(interval.cpk, &index))]);
     }
     section.table(DataTable::untitled(rows.into_iter().map(|(name, ends)| [Cell::text(name), Cell::text(ends)])));
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::analysis::yield_source::least_yield;
 use crate::document::number::{
     UNKNOWN, beside, carried, carried_ends, known, limits, plain, plural, shape, short, significant,
 };
@@ -127,6 +128,9 @@ pub struct SweptPointReport {
     /// The rejects with their error, for readers.
     #[serde(skip)]
     rejects: Rejects,
+    /// Least yield over all distributions of dimensions of which only the band is known, with its text.
+    #[serde(skip)]
+    least: Option<(f64, String)>,
 }
 
 impl SweepReport {
@@ -180,7 +184,7 @@ impl SweepReport {
     /// Table with one line for every characteristic: the range of its mean, and its worst value.
     fn glance(&self) -> DataTable {
         let all = &self.characteristics;
-        let limited = all.iter().any(|one| one.points.iter().any(|point| point.yield_.is_some()));
+        let limited = all.iter().any(|one| one.points.iter().any(|point| point.least_yield().is_some()));
         let judged = all.iter().any(|one| one.points.iter().any(|point| !point.requirements.is_empty()));
         let greatest = |one: &SweptReport| one.points.iter().filter_map(|point| point.sigma).reduce(f64::max);
         let means = move |one: &&SweptReport| {
@@ -196,7 +200,7 @@ impl SweepReport {
             .terminal(true, "sigma up to", move |one| Cell::number(greatest(one), |sigma| significant(sigma, 5)))
             .terminal(true, "", |one| Cell::optional(one.unit.as_deref()))
             .terminal(limited, "least yield", move |one| match one.lower.or(one.upper) {
-                Some(_) => Cell::text(worst(one).and_then(|point| point.rejects().yield_text()).unwrap_or_default()),
+                Some(_) => Cell::text(worst(one).map_or_else(String::new, |point| point.yield_words())),
                 None => Cell::text(NO_LIMITS),
             })
             .terminal(limited, "at", move |one| {
@@ -237,7 +241,7 @@ const ROWS: usize = 19;
 impl SweptReport {
     /// Index of the value with the least yield. None if there are no limits.
     fn worst(&self) -> Option<usize> {
-        let known = self.points.iter().enumerate().filter_map(|(place, point)| Some((place, point.yield_?)));
+        let known = self.points.iter().enumerate().filter_map(|(place, point)| Some((place, point.least_yield()?)));
         known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
     }
 
@@ -264,7 +268,7 @@ impl SweptReport {
             })
         };
         let yielded = |point: &&SweptPointReport| {
-            let text = known(point.yield_, |_| point.rejects().yield_text().unwrap_or_default());
+            let text = known(point.least_yield(), |_| point.yield_words());
             Cell::both(Value::Number(point.yield_), text.trim_end_matches(" %"))
         };
         let mut columns = Columns::default()
@@ -389,12 +393,27 @@ impl SweptPointReport {
             met: analysis.and_then(CharacteristicAnalysis::met),
             verdict: analysis.and_then(CharacteristicAnalysis::verdict),
             requirements: analysis.map_or(Vec::new(), CharacteristicAnalysis::requirements),
+            least: analysis.and_then(|one| one.distribution.distribution_free_yield.as_ref()).and_then(|of| {
+                let [least, _] = of.interval?;
+                Some((least, least_yield(of)?))
+            }),
             rejects: analysis.map_or(Rejects::new(None, None, None), CharacteristicAnalysis::rejects),
         }
     }
 
     pub(super) fn rejects(&self) -> Rejects {
         self.rejects
+    }
+
+    /// Yield, or its least value over all distributions.
+    fn least_yield(&self) -> Option<f64> {
+        self.least.as_ref().map(|(least, _)| *least).or(self.yield_)
+    }
+
+    /// Yield in words. Empty if it is unknown.
+    fn yield_words(&self) -> String {
+        let least = self.least.as_ref().map(|(_, text)| text.clone());
+        least.or_else(|| self.yield_.and_then(|_| self.rejects.yield_text())).unwrap_or_default()
     }
 
     /// Ends of the band that holds all but 0.27 %. None if they are unknown.

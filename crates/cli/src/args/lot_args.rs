@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::args::shared_args::{OUTPUT, OutputArgs, StudyArgs, WorkArgs};
-use crate::values::{part, samples_or_none};
+use crate::values::{html_file, part, pdf_file, samples_or_none};
 
 #[derive(Debug, Args)]
 pub(crate) struct CompareLotArgs {
@@ -41,11 +41,11 @@ pub(crate) struct CompareLotArgs {
     pub(crate) check: bool,
 
     /// Write the report as one HTML page
-    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.html", value_parser = html_file, help_heading = OUTPUT)]
     pub(crate) html: Option<PathBuf>,
 
     /// Print that page to a PDF by an installed Chromium
-    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.pdf", value_parser = pdf_file, help_heading = OUTPUT)]
     pub(crate) pdf: Option<PathBuf>,
 
     /// Write parts, assemblies, differences and groups as CSV files into DIR, which is created if missing

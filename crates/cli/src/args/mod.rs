@@ -25,7 +25,8 @@ pub(super) use crate::values::{
     CostArg, DerivativesArg, MaximiseArg, MinimiseArg, Over, Place, SamplerArg, SensitivitiesArg, StackArg, StencilArg,
 };
 use crate::values::{
-    Movable, count, finite, movable, over, place, positive, probability, samples_or_none, whole, workbook,
+    Movable, count, finite, html_file, movable, over, pdf_file, place, positive, probability, samples_or_none, whole,
+    workbook,
 };
 
 /// The program in one sentence, as in the README.
@@ -243,14 +244,14 @@ pub(super) struct AnalyzeArgs {
     /// Write the report as one HTML page; several studies: a folder of pages
     ///
     /// Write the report as one HTML page, in which other tolerances can be tried; several studies: a folder of pages, STUDY.html
-    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.html", value_parser = html_file, help_heading = OUTPUT)]
     pub(super) html: Option<PathBuf>,
 
     /// Print that page by an installed Chromium; several studies: a folder
     ///
     /// Print that page to a PDF by an installed Chromium: SENSITOL_CHROMIUM, or chromium, chromium-browser or google-chrome on PATH. The
     /// paper is that of the locale, A4 or Letter; several studies: a folder, STUDY.pdf
-    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.pdf", value_parser = pdf_file, help_heading = OUTPUT)]
     pub(super) pdf: Option<PathBuf>,
 
     /// Write the tables of the report as CSV files into DIR, which is created if missing; several studies: into DIR/STUDY
@@ -305,11 +306,11 @@ pub(super) struct SweepArgs {
     pub(super) threads: Option<u16>,
 
     /// Write the report as one HTML page
-    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.html", value_parser = html_file, help_heading = OUTPUT)]
     pub(super) html: Option<PathBuf>,
 
     /// Print that page to a PDF by an installed Chromium
-    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.pdf", value_parser = pdf_file, help_heading = OUTPUT)]
     pub(super) pdf: Option<PathBuf>,
 
     /// Write the table as sweep.csv into DIR, which is created if missing
@@ -375,11 +376,11 @@ pub(super) struct AllocateArgs {
     pub(super) write: Option<PathBuf>,
 
     /// Write the report as one HTML page
-    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.html", value_parser = html_file, help_heading = OUTPUT)]
     pub(super) html: Option<PathBuf>,
 
     /// Print that page to a PDF by an installed Chromium
-    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT, hide_short_help = true)]
+    #[arg(long, value_name = "FILE.pdf", value_parser = pdf_file, help_heading = OUTPUT, hide_short_help = true)]
     pub(super) pdf: Option<PathBuf>,
 
     /// Write tolerances, requirements and front as CSV files into DIR, which is created if missing

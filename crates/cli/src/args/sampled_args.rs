@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 
 use crate::args::shared_args::{OUTPUT, OutputArgs, WorkArgs};
-use crate::values::{MethodArg, SamplerArg, count, part, samples, whole};
+use crate::values::{MethodArg, SamplerArg, count, html_file, part, pdf_file, samples, whole};
 
 /// A study of which points are drawn.
 #[derive(Debug, Args)]
@@ -97,11 +97,11 @@ pub(crate) struct SampleReportArgs {
     pub(crate) check: bool,
 
     /// Write the report as one HTML page
-    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.html", value_parser = html_file, help_heading = OUTPUT)]
     pub(crate) html: Option<PathBuf>,
 
     /// Print that page to a PDF by an installed Chromium
-    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT, hide_short_help = true)]
+    #[arg(long, value_name = "FILE.pdf", value_parser = pdf_file, help_heading = OUTPUT, hide_short_help = true)]
     pub(crate) pdf: Option<PathBuf>,
 
     /// Write estimates and histogram as CSV files into DIR, which is created if missing
@@ -139,11 +139,11 @@ pub(crate) struct CompareArgs {
     pub(crate) samples: Option<u64>,
 
     /// Write the report as one HTML page
-    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.html", value_parser = html_file, help_heading = OUTPUT)]
     pub(crate) html: Option<PathBuf>,
 
     /// Print that page to a PDF by an installed Chromium
-    #[arg(long, value_name = "FILE.pdf", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.pdf", value_parser = pdf_file, help_heading = OUTPUT)]
     pub(crate) pdf: Option<PathBuf>,
 
     /// Write the table as comparison.csv into DIR, which is created if missing

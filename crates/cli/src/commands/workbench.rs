@@ -12,6 +12,7 @@ use crate::args::{OutputArgs, WorkbenchArgs};
 use crate::failure::{Exit, Failure};
 use crate::files::Files;
 use crate::output::{Destination, Look};
+use crate::own_file::Content;
 use sensitol_study::{FileRole, Study};
 
 const PAGE: &str = "workbench.html";
@@ -45,7 +46,7 @@ pub(crate) fn run(asked: &WorkbenchArgs, look: Look) -> Result<Exit, Failure> {
     if let Some(page) = &asked.page {
         files.reads(page, "the page without a study");
     }
-    let destination: Destination = files.output(&output)?;
+    let destination: Destination = files.output_of(&output, &Content::Report)?;
     let data = serde_json::to_string(&given).expect("texts are plain data");
     // Escaped, so that no text of a study ends the element around it.
     let data = data.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026");

@@ -23,7 +23,7 @@ use crate::head::findings;
 use crate::inspection::inspected;
 use crate::output_correlation::{all_limits, conditional, together, together_table};
 use crate::requirement::{judged, lines};
-use crate::sampling::sampled;
+use crate::sampling::{index_names, measured_yield, sampled};
 use crate::{DimensionReport, Report};
 use sensitol::analysis::{CharacteristicAnalysis, Sensitivity, YieldSource};
 use sensitol::extremes::{Extreme, Place};
@@ -416,8 +416,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
         }
         let mut detail = Vec::new();
         let of = |figure: fn(&Capability) -> Option<f64>| self.distribution.capability.as_ref().and_then(figure);
-        // Indices of measured values are performance indices (Pp, Ppk), not those of a process in control (Cp, Cpk).
-        let names = if self.evidence.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
+        let names = index_names(self.evidence.sampling.is_some());
         let indices = [of(|of| of.cp_percentile), of(|of| of.cpk_percentile)];
         let errors =
             self.distribution.quantiles.map_or([None; 2], |of| [of.cp_percentile_error, of.cpk_percentile_error]);
@@ -440,14 +439,18 @@ impl CharacteristicSections for CharacteristicAnalysis {
     fn yield_line(&self) -> String {
         match &self.distribution.distribution_free_yield {
             Some(free) => format!("yield {}", distribution_free(free)),
-            None => yield_line(&self.rejects()),
+            None => match self.evidence.sampling.as_ref().and(self.yield_()).zip(self.yield_interval()) {
+                Some((value, interval)) => measured_yield(value, interval, self.rejects()),
+                None => yield_line(&self.rejects()),
+            },
         }
     }
 
     fn index_line(&self) -> Option<String> {
         let found = self.distribution.capability.as_ref()?;
         let level = found.sigma_level().filter(|_| self.rejects().are_resolved());
-        let named = [("Cp", found.cp), ("Cpk", found.cpk), ("sigma level", level)];
+        let [cp, cpk] = index_names(self.evidence.sampling.is_some());
+        let named = [(cp, found.cp), (cpk, found.cpk), ("sigma level", level)];
         let indices = named.into_iter().filter_map(|(name, value)| Some(format!("{name} {}", index(value?))));
         Some(indices.collect::<Vec<String>>().join("  ")).filter(|line| !line.is_empty())
     }

@@ -187,6 +187,13 @@ impl Budget {
             };
             section.note(format!("{} = {middle} \u{b1} {half}{unit}, for {} %", self.characteristic, self.share()));
         }
+        let promised = self.rows.iter().filter(|row| row.dimension.promised);
+        let promised: Vec<&str> = promised.map(|row| row.dimension.name.as_str()).collect();
+        if !promised.is_empty() {
+            let names = promised.join(", ");
+            section
+                .wrapped(2, format!("{names}: only the band is known, and u is that of a uniform distribution in it"));
+        }
         if self.correlated {
             section.wrapped(
                 2,

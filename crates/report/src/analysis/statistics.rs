@@ -175,10 +175,17 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         let unknown = || Cell::text(UNKNOWN.to_owned());
         // A choice among parts leaves no slopes. Empty columns would push the last one into a second block.
         let has_slopes = all.iter().filter_map(Contributor::alone).any(|(row, _)| row.first.is_some());
+        // A tolerance belongs to the nominal value: beside the mean of an unequal one it would be misread.
+        let unequal = |row: (_, &DimensionReport)| row.1.tolerance.is_some() && row.1.mean != row.1.nominal;
+        let is_nominal = all.iter().filter_map(Contributor::alone).any(|(row, of)| unequal((row, of)));
+        let place = move |of: &DimensionReport| match is_nominal && of.tolerance.is_some() {
+            true => Cell::number(of.nominal, plain),
+            false => Cell::number(of.mean, |mean| own_mean(of, mean)),
+        };
         Columns::default()
             .named("", "contributor", |one: &&Contributor<'_>| Cell::name(one.name))
-            .shown("mean", |one| {
-                one.alone().map_or_else(unknown, |row| Cell::number(row.1.mean, |mean| own_mean(row.1, mean)))
+            .shown(if is_nominal { "nominal" } else { "mean" }, move |one| {
+                one.alone().map_or_else(unknown, |row| place(row.1))
             })
             .shown("tolerance", |one| {
                 let Some((_, dimension)) = one.alone() else { return Cell::text(UNKNOWN.to_owned()) };

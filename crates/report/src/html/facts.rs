@@ -6,6 +6,7 @@ use crate::analysis::statistics::CharacteristicStatistics;
 use crate::document::number::{index, index_with};
 use crate::document::svg::escaped;
 use crate::figures::{Figures, Named};
+use crate::sampling::index_names;
 use sensitol::analysis::CharacteristicAnalysis;
 
 /// Names of the moments.
@@ -24,7 +25,7 @@ pub(super) fn facts(one: &CharacteristicAnalysis) -> String {
     }
     if let Some(found) = one.distribution.capability.as_ref().filter(|_| one.limited() && one.mean().is_some()) {
         // Indices of measured values are performance indices (Pp, Ppk), not those of a process in control (Cp, Cpk).
-        let [cp, cpk] = if one.evidence.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
+        let [cp, cpk] = index_names(one.evidence.sampling.is_some());
         found.cp.into_iter().for_each(|value| row(cp, index(value), String::new()));
         if let Some(value) = found.cpk_percentile {
             let error = one.distribution.quantiles.and_then(|of| of.cpk_percentile_error);
