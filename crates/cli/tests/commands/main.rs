@@ -14,6 +14,7 @@ mod groups;
 mod hosted;
 mod hostile;
 mod import;
+mod import_layouts;
 mod import_meaning;
 mod import_step;
 mod init;

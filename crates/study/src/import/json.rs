@@ -3,13 +3,14 @@
 use serde_json::{Map, Value};
 
 use crate::import::sheet::{Content, Sheet};
+use crate::import::text_sheet::stack_sheet;
 
 /// Deepest nesting of objects in a row. The leaves of a deeper one are left out.
 const DEEPEST: usize = 4;
 
 /// Sheet of a text: a list of rows in JSON, or columns between tabs, semicolons or commas.
 pub fn sheet_of(text: &str) -> Sheet {
-    of_json(text.strip_prefix('\u{feff}').unwrap_or(text)).unwrap_or_else(|| Sheet::of_text(text))
+    of_json(text.strip_prefix('\u{feff}').unwrap_or(text)).unwrap_or_else(|| stack_sheet(text))
 }
 
 /// Sheet of a list of objects, which may stand in an object. Returns None if the text is no JSON of this form.

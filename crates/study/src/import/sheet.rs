@@ -1,6 +1,5 @@
 //! Cells of a sheet by row and column, with their names in a spreadsheet.
 
-use crate::import::header::has_header;
 use crate::table::{DELIMITERS, delimiter, records};
 
 /// Content of a cell.
@@ -60,17 +59,11 @@ impl Sheet {
         if let Some(told) = told.filter(|mark| DELIMITERS.contains(mark)) {
             return Self::separated(rest, told);
         }
-        // A title without separators stands above the header of some tables.
-        let found = Self::separated(text, delimiter(text, DELIMITERS));
-        if has_header(&found, &[]) {
-            return found;
-        }
-        let others = DELIMITERS.map(|mark| Self::separated(text, mark));
-        others.into_iter().find(|sheet| has_header(sheet, &[])).unwrap_or(found)
+        Self::separated(text, delimiter(text, DELIMITERS))
     }
 
     /// Sheet of a text with this delimiter.
-    fn separated(text: &str, delimiter: u8) -> Self {
+    pub(super) fn separated(text: &str, delimiter: u8) -> Self {
         let content = |cell: &str| match cell.trim_matches([' ', '\u{a0}']) {
             "" => Content::Empty,
             text => Content::Text(text.to_owned()),
