@@ -125,7 +125,7 @@ pub(super) enum Failure {
     NoTable { flag: &'static str, path: PathBuf },
     #[error("the format of the budget stands behind `=`: write --gum={format}")]
     GumFormat { format: &'static str },
-    #[error("{path}: -o writes text here; write {right}", path = path.display())]
+    #[error("{path}: -o writes text or JSON; write {right}", path = path.display())]
     OtherKind { path: PathBuf, right: String },
     #[error("the table cannot be written: {reason}")]
     Table { reason: String },

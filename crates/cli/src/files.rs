@@ -51,21 +51,15 @@ impl Files {
         self.read.push((resolved(path), what));
     }
 
-    /// Opens the file of `--output`, or returns stdout.
+    /// Opens the file of `--output` of a command that writes pages and workbooks too, or returns stdout.
     pub(super) fn output(&mut self, asked: &OutputArgs) -> Result<Destination, Failure> {
-        if let Some(path) = &asked.output {
-            let file = path.display();
-            let right = match ending(path).as_str() {
-                "html" | "htm" => Some(format!("--html {file}")),
-                "pdf" => Some(format!("--pdf {file}")),
-                "xlsx" => Some(format!("--xlsx {file}")),
-                "json" if !asked.json => Some(format!("--json -o {file}")),
-                _ => None,
-            };
-            if let Some(right) = right {
-                return Err(Failure::OtherKind { path: path.clone(), right });
-            }
-        }
+        refuse_other_kinds(asked, &["html", "htm", "pdf", "xlsx"])?;
+        self.output_of(asked, &Content::Report)
+    }
+
+    /// Opens the file of `--output` of a command that writes nothing but text and JSON, or returns stdout.
+    pub(super) fn output_text(&mut self, asked: &OutputArgs) -> Result<Destination, Failure> {
+        refuse_other_kinds(asked, &[])?;
         self.output_of(asked, &Content::Report)
     }
 
@@ -128,4 +122,18 @@ fn resolved(path: &Path) -> PathBuf {
         Some(std::fs::canonicalize(folder).ok()?.join(path.file_name()?))
     };
     std::fs::canonicalize(path).ok().or_else(within).unwrap_or_else(|| path.to_owned())
+}
+
+/// Refuses a file of `--output` with the ending of another kind. The command has an option for each of `written`.
+fn refuse_other_kinds(asked: &OutputArgs, written: &[&str]) -> Result<(), Failure> {
+    let Some(path) = &asked.output else { return Ok(()) };
+    let (file, found) = (path.display(), ending(path));
+    let right = match found.as_str() {
+        "json" if !asked.json => format!("--json -o {file}"),
+        "html" | "htm" if written.contains(&"html") => format!("--html {file}"),
+        "pdf" | "xlsx" if written.contains(&found.as_str()) => format!("--{found} {file}"),
+        "html" | "htm" | "pdf" | "xlsx" => format!("-o {}", path.with_extension("txt").display()),
+        _ => return Ok(()),
+    };
+    Err(Failure::OtherKind { path: path.clone(), right })
 }

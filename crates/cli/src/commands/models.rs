@@ -47,7 +47,7 @@ pub(crate) fn run(asked: &ModelsArgs, look: Look) -> Result<Exit, Failure> {
             if asked.output.json { json(&ModelReport::of(model)) } else { text(&document(model), style) }
         }
     };
-    Files::default().forced(asked.output.force).output(&asked.output)?.write(&printed)?;
+    Files::default().forced(asked.output.force).output_text(&asked.output)?.write(&printed)?;
     Ok(Exit::Done)
 }
 

@@ -33,7 +33,7 @@ pub(crate) struct Answers {
 
 pub(crate) fn run(asked: &PearsonArgs, look: Look) -> Result<Exit, Failure> {
     let law = Pearson::new(asked.mean, asked.sigma, asked.skewness, asked.kurtosis)?;
-    let destination = Files::default().forced(asked.output.force).output(&asked.output)?;
+    let destination = Files::default().forced(asked.output.force).output_text(&asked.output)?;
     let all = |values: &[f64], of: fn(&Pearson, f64) -> f64| values.iter().map(|&value| of(&law, value)).collect();
     let answers = Answers {
         kind: law.kind().name(),

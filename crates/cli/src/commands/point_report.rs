@@ -100,7 +100,7 @@ impl PoseReport {
 
 pub(crate) fn run(study: &Study, asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
     let mut files = Files::of(&asked.study, study, None).forced(asked.output.force);
-    let destination = files.output(&asked.output)?;
+    let destination = files.output_text(&asked.output)?;
     let nominal = [Place::default()];
     let places = if asked.at.is_empty() { &nominal[..] } else { &asked.at[..] };
     let rows = places.iter().map(|place| point(&study.problem, place)).collect::<Result<Vec<_>, Failure>>()?;

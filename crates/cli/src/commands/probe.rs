@@ -72,7 +72,7 @@ pub(crate) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
     let externals = Externals { listener: listener(look), ..Externals::default() }.with_sentinels(false);
     let study = study::read(&asked.study, externals)?;
     let mut files = Files::of(&asked.study.study, &study, None).forced(asked.output.force);
-    let destination = files.output(&asked.output)?;
+    let destination = files.output_text(&asked.output)?;
     interrupt::listen();
     let costly = study.problem.function().signature().costly;
     let bar = costly.then(|| Bar::new(evaluations(&study.problem), look.quiet));

@@ -104,6 +104,6 @@ fn what_cannot_be_compared_is_said() {
     refused(&["analyze", "old.toml", "--compare"], 2, "name two files, not 1");
     refused(&["analyze", "old.toml", "new.toml", "old.toml", "--compare"], 2, "name two files, not 3");
     refused(&["analyze", "old.toml", "none.toml", "--compare"], 2, "none.toml");
-    refused(&["analyze", "old.toml", "new.toml", "--compare", "--html", "new.toml"], 2, "which would be lost");
+    refused(&["analyze", "old.toml", "new.toml", "--compare", "-o", "new.toml"], 2, "which would be lost");
     refused(&["analyze", "old.toml", "new.toml", "--compare", "--stack", "csv"], 2, "--stack");
 }

@@ -111,7 +111,9 @@ fn files_of_others_stay() {
             let (code, error) = run(folder.path(), &line.replace("FILE", name));
             // A workbook is not written under the name of another kind of file, forced or not.
             let is_forced = error.contains(&format!("`{name}`")) && error.contains("--force");
-            let is_misnamed = line.contains("--xlsx") && !name.ends_with(".xlsx") && error.contains("theirs.xlsx");
+            let is_misnamed = ["--html", "--xlsx", "-o "].iter().any(|option| line.contains(option))
+                && error.contains("theirs.")
+                && ["write --", "write -o", "is written as"].iter().any(|right| error.contains(right));
             assert!(code == 2 && (is_forced || is_misnamed), "{line}: {error}");
             assert_eq!(std::fs::read(at(name)).unwrap(), bytes, "{line} {name}");
         }
@@ -196,5 +198,42 @@ fn long_texts_of_others_are_clipped() {
         let output = sensitol(&arguments).current_dir(folder.path()).output().unwrap();
         let said = [output.stdout, output.stderr].concat();
         assert!(said.len() < 60_000, "{line}: {} bytes", said.len());
+    }
+}
+
+/// A page, a text and a workbook are never written into a file of another kind: nothing is evaluated or written, and the right option is named.
+#[test]
+fn endings_of_other_kinds_are_refused() {
+    let folder = folder();
+    let cases = [
+        ("analyze gap.toml --html page.pdf", "--pdf page.pdf"),
+        ("analyze gap.toml --html page.json", "--json -o page.json"),
+        ("analyze gap.toml --html study.toml", "--html study.html"),
+        ("analyze gap.toml --pdf page.html", "--html page.html"),
+        ("simulate gap.toml --html book.xlsx", "--html book.html"),
+        ("allocate gap.toml --pdf page.htm", "--html page.htm"),
+        ("compare gap.toml --html table.csv", "--html table.html"),
+        ("analyze gap.toml --xlsx book.html", "book.xlsx"),
+        ("analyze gap.toml -o page.html", "--html page.html"),
+        ("simulate gap.toml -o page.PDF", "--pdf page.PDF"),
+        ("analyze gap.toml -o book.xlsx", "--xlsx book.xlsx"),
+        ("analyze gap.toml -o result.json", "--json -o result.json"),
+        ("plan gap.toml -o page.html", "-o page.txt"),
+        ("models -o models.json", "--json -o models.json"),
+    ];
+    for (line, right) in cases {
+        let (code, fault) = run(folder.path(), line);
+        assert!(code == 2 && fault.contains(right), "{line}: {code} {fault}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "{line} wrote a file");
+    }
+    // The right ending, other endings and none are free.
+    for line in [
+        "analyze gap.toml --html page.htm",
+        "analyze gap.toml -o report.txt",
+        "analyze gap.toml -o report",
+        "analyze gap.toml --json -o a.json",
+    ] {
+        let (code, fault) = run(folder.path(), line);
+        assert_eq!(code, 0, "{line}: {fault}");
     }
 }
