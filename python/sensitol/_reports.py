@@ -89,7 +89,7 @@ class AllocatedTolerance(Record):
     cost_before: Optional[float]
     """Cost before. None if no process holds the tolerance."""
     deviations: AllocatedToleranceDeviations
-    """Lower and upper deviation from the nominal before and after, where there is a band."""
+    """Lower and upper deviation from the nominal before and after, if there is a band."""
     dimension: str
     """The dimension."""
     process: Optional[str]
@@ -150,13 +150,13 @@ class AllocationResult(Result):
     failed: int
     """Points without a value of at least one characteristic."""
     front: List[FrontPoint]
-    """Cost against what is required."""
+    """Cost against the requirements."""
     goal: Goal
     """The objective, and the most that may be spent on it."""
     in_model_s: float
     """Time within the model, of all threads together."""
     joint_requirement: Optional[JointKept]
-    """The joint yield that is required of all characteristics with limits; null where none is."""
+    """Required joint yield of all characteristics with limits; null if none is required."""
     joint_yield: AllocationResultJointYield
     """The share of assemblies that keep all limits at once; null with fewer than two characteristics with limits."""
     loosest_scaling: AllocationResultLoosestScaling
@@ -186,7 +186,7 @@ class AllocationResult(Result):
     sensitol: str
     """The version of the program."""
     setups: List[SetUp]
-    """The machines that the processes need, and what it costs to set them up, which is part of the cost."""
+    """Machines of the processes, with the cost of their setup, which is part of the cost."""
     shadow_prices: List[AllocationResultShadowPrices]
     """Shadow prices of limits and required sigmas."""
     stages: int
@@ -344,7 +344,7 @@ class AnalysisResult(Result):
     account: Optional[Account]
     """The findings of `auto` and the use of its points; None for any other method."""
     basis: Literal['exact', 'differences', 'least-squares', 'quadrature']
-    """Basis of the moments."""
+    """The basis of the moments."""
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristic_correlation: List[OutputCorrelation]
@@ -355,10 +355,8 @@ class AnalysisResult(Result):
     """The command that made the report."""
     correlation: List[Pair]
     """The dimensions that vary together."""
-    derivatives: Optional[str]
-    """Source of the derivatives from which the moments follow: `exact` or `difference`; null if they follow from
-    none.
-    """
+    derivatives: Optional[Literal['exact', 'difference']]
+    """Source of the derivatives from which the moments follow. None if they follow from none."""
     dimensions: List[DimensionResult]
     """The dimensions, in the study's order."""
     evaluations: int
@@ -411,10 +409,10 @@ class AnalysisResult(Result):
 
 
 class Beyond(Record):
-    """Rejects beyond one limit, as they are written."""
+    """Results beyond one limit."""
 
     bounds: Optional[List[float]]
-    """Probability if no point without a value lies beyond, and if all do; null if every point has a value."""
+    """Probability if no point without a value lies beyond, and if all of them do. None if every point has a value."""
     design_point: Optional[DesignPoint]
     """Most likely assembly at the limit, from the surrogate and from rejects of the model. None if none is known."""
     effective_samples: float
@@ -434,7 +432,9 @@ class Beyond(Record):
     ppm: Optional[float]
     """Probability in parts per million."""
     probability: Optional[float]
-    """Probability of an assembly beyond the limit; null if no point lies there."""
+    """Probability beyond the limit. None if no point lies there. The interval is then a bound, for a corner that
+    none of the explored points met.
+    """
     standard_error: Optional[float]
     """Standard error of the probability."""
     unmet: Optional[Unmet]
@@ -467,7 +467,7 @@ class Capability(Record):
 
 
 class CharacteristicResult(Fitted):
-    """A characteristic with its verdicts and intervals, in JSON."""
+    """Figures of one characteristic, with their evidence. Unknown values are None."""
 
     basis: FigureBases
     """Bases of the figures: `proof`, `points` of the model, or the `surface`."""
@@ -526,10 +526,10 @@ class CharacteristicResult(Fitted):
     3: `0.5 sum of |slope| x half-width + 0.5 rss` (Greenwood and Chase 1987 with m = 0.5).
     """
     met: Optional[bool]
-    """True if the target yield is met; null if unknown."""
+    """True if the target yield is met. None if there is no target, and if it is unknown."""
     middle: Optional[float]
-    """Value of a linear model with every dimension in the middle of its band: the middle of the worst case, of the
-    RSS and of the two inflations of it. It is the nominal value if all bands are symmetric.
+    """Middle of the worst case and of the RSS: the value of a linear model with every dimension in the middle of its
+    band. It is the nominal value if all bands are symmetric.
     """
     model_sampling: Optional[SampledModel]
     """Points of the model from which the moments follow, in place of a surrogate that was not trusted."""
@@ -544,8 +544,8 @@ class CharacteristicResult(Fitted):
     pearson_fit: Optional[Capability]
     """Capability by the Pearson fit."""
     points_to_decide: Optional[int]
-    """Plain points of the model that would decide the target yield if it is right; null unless its verdict comes
-    from a surface that no check point refutes.
+    """Plain points of the model that would decide the target yield; null unless the verdict comes from an unrefuted
+    surface.
     """
     possible_interactions: int
     """Number of possible interactions."""
@@ -556,7 +556,7 @@ class CharacteristicResult(Fitted):
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
     ppm_below_interval: Optional[List[float]]
-    """95 % interval of the assemblies below the lower limit alone, per million. 0 to 0 if a proof excludes them,
+    """95 % interval of the assemblies below the lower limit alone, per million: 0 to 0 if a proof excludes them,
     null if it is unknown.
     """
     quantiles: Optional[QuantileEstimates]
@@ -607,7 +607,7 @@ class CharacteristicResult(Fitted):
     upper: Optional[float]
     """Upper limit."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """Verdict on the target yield; null without a target."""
+    """Verdict on the target yield. None if there is no target."""
     verification: Optional[Verification]
     """Verification of these results by the model itself. None if they were not verified."""
     without_value: int
@@ -672,7 +672,7 @@ class ComparisonResult(Result):
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristics: List[ComparedCharacteristic]
-    """The results of every characteristic asked for."""
+    """The results of every characteristic requested."""
     command: str
     """The command that made the report."""
     evaluations: int
@@ -735,7 +735,7 @@ class Confirmation(Record):
 
 
 class Control(Record):
-    """Effect of a surrogate as control variate, in JSON."""
+    """Effect of a surrogate as control variate."""
 
     evaluations: int
     """Evaluations of the surrogate, for all characteristics together."""
@@ -775,7 +775,7 @@ class DimensionResult(Record):
     """One dimension as the analysis took it."""
 
     degrees: Optional[float]
-    """Degrees of freedom of its standard uncertainty; null where the study says none."""
+    """Degrees of freedom of its standard uncertainty; null if the study gives none."""
     description: Optional[str]
     """Description in a few words."""
     distribution: Optional[str]
@@ -866,18 +866,22 @@ class ErrorSource(Record):
 
 
 class ErrorVsReference(Record):
-    """Errors with derived figures, as serialised."""
+    """Errors of a method against the reference: that of the mean in sigmas, that of sigma relative, the others
+    absolute.
+    """
 
     kurtosis: Optional[float]
     """Fourth standardised moment."""
     mean: Optional[float]
     """Expected value."""
     overall: Optional[float]
-    """Overall error, in sigmas: root of the sum of squares of the errors of mean and sigma."""
+    """Overall error, in sigmas: root of the sum of squares of the errors of mean and sigma. None if one of them is
+    unknown.
+    """
     reference_standard_error: Figures
     """Standard errors of the reference, in the same units. Differences up to twice these are not resolved."""
     resolved: bool
-    """True if the reference resolves the overall error."""
+    """True if the overall error exceeds the part that may be due to the reference."""
     sigma: Optional[float]
     """Standard deviation."""
     skewness: Optional[float]
@@ -910,7 +914,7 @@ class EvaluatorSummary(Record):
     crashes: int
     """Processes that ended while points were under way, or before they were ready."""
     garbage: int
-    """Lines that were no valid answers."""
+    """Lines that were not valid answers."""
     lost_s: float
     """Seconds from the last answer of each failed process until its replacement was ready."""
     retried: int
@@ -1011,7 +1015,7 @@ class Goal(Record):
 
     kind: Literal['least-cost', 'most-cpk', 'fewest-rejects']
     cost_limit: Optional[float]
-    """Most that may be spent."""
+    """Greatest amount that may be spent."""
 
 
 class Histogram(Record):
@@ -1050,7 +1054,7 @@ class InspectionRisks(Record):
     gauge: float
     """Standard deviation of the gauge."""
     guard: Optional[float]
-    """Amount by which the limits are tightened. None if no guard reaches the wanted rate."""
+    """Amount by which the limits are tightened. None if no guard reaches the requested rate."""
 
 
 class Interaction(Record):
@@ -1126,12 +1130,12 @@ class JointYield(Record):
 
 
 class Judged(Record):
-    """Judged requirement as serialised in results."""
+    """Requirement with the value found, its interval and the verdict."""
 
     interval: Optional[List[Optional[float]]]
-    """Interval of the value, an end null if it is unbounded. Null as a whole if it is unknown."""
+    """Interval of the value, an end null if it is unbounded. None as a whole if it is unknown."""
     met: Optional[bool]
-    """True if the requirement is met. Null if that is unknown."""
+    """True if the requirement is met. None if that is unknown."""
     required: float
     """Required amount. For `rss` and `worst-case`, the fraction of the limits used, at most 1."""
     requirement: str
@@ -1139,7 +1143,7 @@ class Judged(Record):
     value: Optional[float]
     """Value found, null if it is unknown."""
     verdict: Literal['met', 'missed', 'inconclusive']
-    """Verdict in a word: met, missed or inconclusive."""
+    """Verdict from the interval."""
 
 
 class Law(Record):
@@ -1157,7 +1161,7 @@ class Law(Record):
 
 
 class LawRefutation(Record):
-    """A refutation in JSON."""
+    """Contradiction that refutes the distribution of a surface."""
 
     counted: float
     """Share of points below the limit."""
@@ -1166,9 +1170,9 @@ class LawRefutation(Record):
     law: float
     """Share of assemblies below the limit by the distribution."""
     limit: float
-    """Limit at which the distribution failed."""
-    test: str
-    """`monotone` (quantiles or shares fall) or `count` (points contradict a share)."""
+    """Limit at which it failed."""
+    test: Literal['monotone', 'count']
+    """Failed test."""
 
 
 class NotRun(Record):
@@ -1226,16 +1230,16 @@ class Parameter(Record):
 
 
 class Proof(Record):
-    """Proof with the kind of its bound, as it is written."""
+    """Evidence that nothing is cheaper."""
 
     bound: Optional[float]
     """Lower bound of the cost of every choice of processes. None if there are no lists, and if no bound is known."""
     bound_is_exact: Optional[bool]
-    """True if the bound is exact, false if it rests on a sample of choices; null without a bound."""
+    """True if the bound is exact, false if it rests on a sample of choices. None if there is no bound."""
     closed_form: bool
     """True if Lagrange's condition gave the result in closed form."""
     gap: Optional[float]
-    """Greatest possible excess of the cost over the bound, as a part of the cost."""
+    """Greatest possible excess of the cost over the bound, as a part of the cost. None if there is no bound."""
     kkt_residual: Optional[float]
     """Largest violation of the conditions of Karush, Kuhn and Tucker. None if everything is chosen from lists."""
     nodes: int
@@ -1264,12 +1268,12 @@ class QuantileEstimates(Record):
 
 
 class RareCharacteristic(Record):
-    """Characteristic with its verdicts, as it is written."""
+    """Results of one characteristic."""
 
     above: Optional[Beyond]
-    """Rejects above the upper limit; null if there is no upper limit."""
+    """Results above the upper limit. None if there is no upper limit."""
     below: Optional[Beyond]
-    """Rejects below the lower limit; null if there is no lower limit."""
+    """Results below the lower limit. None if there is no lower limit."""
     description: Optional[str]
     """Description in a few words."""
     drawing: Optional[str]
@@ -1283,13 +1287,13 @@ class RareCharacteristic(Record):
     lower: Optional[float]
     """Lower limit."""
     met: Optional[bool]
-    """True if the interval of the yield lies above the target, false if below, null if around it."""
+    """True if the target yield is met. None if there is no target, and if it is unknown."""
     name: str
     """Name of the characteristic."""
     part: Optional[str]
     """Part that it belongs to."""
     requirements: List[Judged]
-    """Verdicts on all requirements, including the target yield."""
+    """Verdicts on all requirements, the target yield included."""
     revision: Optional[str]
     """Revision of the drawing."""
     sampling_interval: Optional[SamplingInterval]
@@ -1303,7 +1307,7 @@ class RareCharacteristic(Record):
     upper: Optional[float]
     """Upper limit."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """Verdict on the target yield; null if there is no target."""
+    """Verdict on the target yield. None if there is no target."""
     yield_: Optional[float]
     """Yield. None if the probability beyond one of the limits is unknown."""
     yield_interval: Optional[List[float]]
@@ -1342,7 +1346,7 @@ class RareResult(Result):
     method: str
     """`importance-sampling`."""
     reached: Optional[bool]
-    """True if the wanted accuracy was reached. None if none was wanted."""
+    """True if the requested accuracy was reached. None if none was requested."""
     retried: int
     """Points sent again, because an answer was a failure or was not trusted."""
     samples: int
@@ -1377,7 +1381,7 @@ class RareResult(Result):
 
 
 class Reduction(Record):
-    """Ratios of the standard errors without and with the surrogate; null if unknown or if the denominator is 0."""
+    """Ratios of the standard errors without and with the surrogate. None if unknown, and if the denominator is 0."""
 
     mean: Optional[float]
     """Ratio for the mean."""
@@ -1469,8 +1473,8 @@ class RunSummary(Record):
 
 
 class SampleTails(Record):
-    """Tails of a sample, on every side that has a limit: from 10 % to 1 ppm, or to the share of the last few points,
-    in even steps of its logarithm.
+    """Tails of a sample on every side with a limit: from 10 % to 1 ppm or the last few points, in even steps of the
+    logarithm.
     """
 
     above: List[TailPoint]
@@ -1527,9 +1531,9 @@ class SampledModel(Record):
     skewness: Optional[float]
     """Value for the third standardised moment."""
     yield_: Optional[float]
-    """Share of the sample within the limits."""
+    """Share of the sample within the limits. None if there are no limits."""
     yield_interval: Optional[List[float]]
-    """95 % interval of `yield`."""
+    """95 % interval of the yield."""
 
 
 class SampledTail(Record):
@@ -1544,7 +1548,7 @@ class SampledTail(Record):
     yield_: float
     """Yield by these points."""
     yield_interval: List[float]
-    """95 % interval of the yield, with what no point may have met."""
+    """95 % interval of the yield, unseen rejects included."""
 
 
 class SamplingInterval(Record):
@@ -1633,7 +1637,7 @@ class SetUp(Record):
 
 
 class SimulatedCharacteristic(Record):
-    """A characteristic with standard errors next to the values, in JSON."""
+    """Estimates for one characteristic, each with its standard error. Unknown values are None."""
 
     conditional_yield: Optional[ConditionalYield]
     """Yield of the assemblies that keep the limits of the characteristic that this one is given. None if it is given
@@ -1668,7 +1672,7 @@ class SimulatedCharacteristic(Record):
     mean: Optional[float]
     """Mean value."""
     met: Optional[bool]
-    """True if the interval of the yield is above the target, false if below, null if it contains the target."""
+    """True if the target yield is met. None if there is no target, and if it is unknown."""
     name: str
     """Name of the characteristic."""
     part: Optional[str]
@@ -1680,7 +1684,7 @@ class SimulatedCharacteristic(Record):
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
     ppm_below_interval: Optional[List[float]]
-    """95 % interval of the assemblies below the lower limit alone, per million. 0 to 0 if a proof excludes them,
+    """95 % interval of the assemblies below the lower limit alone, per million: 0 to 0 if a proof excludes them,
     null if it is unknown.
     """
     range: Optional[List[float]]
@@ -1712,7 +1716,7 @@ class SimulatedCharacteristic(Record):
     upper: Optional[float]
     """Upper limit."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """Verdict on the target yield; null if there is no target."""
+    """Verdict on the target yield. None if there is no target."""
     yield_: Optional[float]
     """Share of assemblies within the limits. None if there are no limits."""
     yield_bounds: Optional[List[float]]
@@ -1754,8 +1758,8 @@ class SimulationResult(Result):
     """True if the requested accuracy was reached. None if none was requested."""
     retried: int
     """Points sent again, because an answer was a failure or was not trusted."""
-    sampler: str
-    """`random` or `sobol`."""
+    sampler: Literal['random', 'sobol']
+    """Sampler of the points."""
     samples: int
     """Number of points that were answered."""
     schema: int
@@ -1814,26 +1818,28 @@ class StandardErrors(Record):
 
 
 class SurfaceLaw(Record):
-    """Results of the surface distribution, in JSON."""
+    """Shares of a characteristic by the distribution of its surface."""
 
-    branch: str
+    branch: Literal['exact', 'single', 'sampled']
     """Kind of computation of the distribution: `exact`, `single` or `sampled`."""
     counted_points: Optional[int]
-    """Number of surface points that were counted because the distribution could not be computed or is refuted; null
+    """Number of surface points that were counted because the distribution could not be computed or is refuted. None
     if it was computed.
     """
     ppm_above: Optional[float]
-    """Assemblies above the upper limit, per million."""
+    """Share above the upper limit. None if there is no such limit."""
     ppm_below: Optional[float]
-    """Assemblies below the lower limit, per million."""
+    """Share below the lower limit. None if there is no such limit."""
     quantiles: Optional[Dict[str, float]]
-    """Quantiles; null if one of them is unknown."""
+    """Quantiles at the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES). None if one of them is
+    unknown: those of the Pearson fit are reported then.
+    """
     refuted: Optional[LawRefutation]
-    """Contradiction because of which points replace the distribution; null without one."""
+    """Contradiction because of which points replace the distribution. None if there is none."""
     step_function: bool
-    """True if the distribution is a step function, because every input with an effect has measured values only."""
+    """True if the distribution is a step function: every input with an effect has measured values only."""
     yield_: Optional[float]
-    """Share within the limits; null without limits."""
+    """Share within the limits. None if there are no limits."""
     yield_error: Optional[float]
     """Numerical error of the share within the limits: of the distribution of this surface, not of the surface."""
 
@@ -1844,7 +1850,7 @@ class SweepResult(Result):
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristics: List[SweptCharacteristic]
-    """The results of every characteristic asked for."""
+    """The results of every characteristic requested."""
     command: str
     """The command that made the report."""
     evaluations: int
@@ -1894,7 +1900,7 @@ class SweptCharacteristic(Record):
     name: str
     """Name of the characteristic."""
     points: List[SweptPoint]
-    """In the order of the parameter's values."""
+    """Points in the order of the parameter's values."""
     unit: Optional[str]
     """Unit of the characteristic."""
     upper: Optional[float]
@@ -1923,7 +1929,7 @@ class SweptPoint(Record):
     ppm_below: Optional[float]
     """Rejected below the lower limit, in parts per million."""
     ppm_below_interval: Optional[List[float]]
-    """95 % interval of the assemblies below the lower limit alone, per million. 0 to 0 if a proof excludes them,
+    """95 % interval of the assemblies below the lower limit alone, per million: 0 to 0 if a proof excludes them,
     null if it is unknown.
     """
     quantile_errors: Dict[str, Optional[float]]
@@ -1945,7 +1951,7 @@ class SweptPoint(Record):
     yield_: Optional[float]
     """Share of assemblies within the limits."""
     yield_interval: Optional[List[float]]
-    """Within which that is known, measured samples included; null where it is not known."""
+    """Interval of the yield, with the uncertainty of measured samples; null if unknown."""
     yield_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
     """Source of the yield; null without limits."""
 
@@ -1962,10 +1968,10 @@ class TailPoint(Record):
 
 
 class Unmet(Record):
-    """Bound of the probability of a region that no point met."""
+    """Bound of the probability of a region without a sampled point."""
 
     directions: int
-    """Most directions that the region needs at once: 1 for a half-space, 2 or 3 for a corner."""
+    """Greatest number of directions that the region needs at once: 1 for a half-space, 2 or 3 for a corner."""
     most: float
     """Greatest probability of such a region, with 97.5 %. It is in the upper end of the interval."""
     points: int
@@ -1984,10 +1990,10 @@ class VarianceShare(Record):
 
 
 class Verification(Record):
-    """A verification in JSON."""
+    """Results of the model itself for a characteristic."""
 
     degree: Optional[int]
-    """Degree of the polynomial that the formula is; null for other kinds."""
+    """Degree of the polynomial that the formula is. None for other kinds."""
     difference: Optional[List[Verified]]
     """Difference of the shares of model and surface within the limits, below and above them. None if there is no
     sample of both.
@@ -1995,9 +2001,9 @@ class Verification(Record):
     far_residual: Optional[FarResidual]
     """Largest residual of the surface far from the means. None if no check point met one that changes a figure."""
     figures: VerifiedFigures
-    """Figures of the model itself; null without a sample of it."""
-    kind: str
-    """`sample`, `checks` or `exact`."""
+    """Figures of the model itself."""
+    kind: Literal['sample', 'checks', 'exact']
+    """Kind of the verification."""
     left: Optional[float]
     """Share of the variance that the surface leaves unexplained."""
     lost_share: Optional[float]

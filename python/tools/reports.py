@@ -22,9 +22,10 @@ ROOTS = {
 }
 #: Names for readers, where the schema has those of the engine.
 NAMES = {
-    "CharacteristicShape": "CharacteristicResult",
-    "SimulatedShape": "SimulatedCharacteristic",
-    "RareShape": "RareCharacteristic",
+    "CharacteristicAnalysis": "CharacteristicResult",
+    "SurfaceShares": "SurfaceLaw",
+    "SurrogateControl": "Control",
+    "Errors": "ErrorVsReference",
     "SweptReport": "SweptCharacteristic",
     "SweptPointReport": "SweptPoint",
     "ComparedReport": "ComparedCharacteristic",
@@ -32,8 +33,6 @@ NAMES = {
     "DimensionReport": "DimensionResult",
     "AllocatedReport": "AllocatedTolerance",
     "WarningReport": "ReportedWarning",
-    "FiguresShape": "VerifiedFigures",
-    "ErrorShape": "ErrorVsReference",
 }
 HEAD = '''"""The types of results, one class for each object of a report. Made from the schema of reports by tools/reports.py."""
 
@@ -165,6 +164,7 @@ class Writer:
 
 def said(text: str) -> str:
     text = re.sub(r"```.*?```", "", text, flags=re.DOTALL)  # examples are those of Rust
+    text = re.sub(r"\b[Nn]ull\b", "None", text)  # the schema has the words of JSON
     text = " ".join(text.split()).replace("\\", "\\\\").replace('"""', "'''")
     text = text if not text.endswith('"') else text + " "
     lines = textwrap.wrap(text, 110)

@@ -70,16 +70,21 @@ pub struct SurfaceShares {
     pub yield_: Option<f64>,
     /// Share below the lower limit. None if there is no such limit.
     #[serde(rename = "ppm_below", serialize_with = "ppm")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(with = "Option<f64>", description = "Assemblies below the lower limit, per million.")
+    )]
     pub below: Option<LawFigure>,
     /// Share above the upper limit. None if there is no such limit.
     #[serde(rename = "ppm_above", serialize_with = "ppm")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<f64>"))]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(with = "Option<f64>", description = "Assemblies above the upper limit, per million.")
+    )]
     pub above: Option<LawFigure>,
     /// Numerical error of the share within the limits: of the distribution of this surface, not of the surface.
     pub yield_error: Option<f64>,
-    /// Quantiles at the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES). None if one of them is unknown: those of the
-    /// Pearson fit are reported then.
+    /// Quantiles at the reported probabilities. None if one of them is unknown: those of the Pearson fit are reported then.
     #[serde(serialize_with = "quantile_values")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Quantiles>"))]
     pub quantiles: Option<[LawFigure; 7]>,

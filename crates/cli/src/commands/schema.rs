@@ -18,7 +18,7 @@ use sensitol_study::schema;
 
 pub(crate) fn run(asked: &SchemaArgs) -> Result<Exit, Failure> {
     let output = OutputArgs { json: true, output: asked.output.clone(), force: asked.force };
-    let destination = Files::default().forced(asked.force).output(&output)?;
+    let destination = Files::default().forced(asked.force).output_text(&output)?;
     destination.write(&json(&if asked.report { reports() } else { schema() }))?;
     Ok(Exit::Done)
 }
@@ -60,6 +60,7 @@ fn reports() -> Value {
         "$defs": definitions,
     });
     close(&mut schema);
+    describe_json(&mut schema);
     // Added after `close`: a report within an entry stays open, because the entry adds the name of its study.
     schema["anyOf"].as_array_mut().expect("a list").push(value!({ "$ref": "#/$defs/analyze-several" }));
     schema["$defs"]["analyze-several"] = several_reports();
@@ -74,6 +75,7 @@ fn several_reports() -> Value {
     });
     let mut schema = of::<Vec<several::Entry>>(&mut settings.into_generator());
     close(&mut schema);
+    describe_json(&mut schema);
     for outcome in schema["items"]["anyOf"].as_array_mut().into_iter().flatten() {
         outcome.as_object_mut().map(|object| object.remove("unevaluatedProperties"));
     }
@@ -95,5 +97,79 @@ fn close(schema: &mut Value) {
         }
         Value::Array(items) => items.iter_mut().for_each(close),
         _ => {}
+    }
+}
+
+/// Says `null` for `None` in all descriptions, and removes the links of rustdoc: the descriptions are those of the Rust types.
+fn describe_json(schema: &mut Value) {
+    match schema {
+        Value::Object(object) => {
+            object.values_mut().for_each(describe_json);
+            if let Some(Value::String(text)) = object.get_mut("description") {
+                *text = without_links(text).split(' ').map(json_word).collect::<Vec<_>>().join(" ");
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(describe_json),
+        _ => {}
+    }
+}
+
+/// Word of a description of Rust as one of JSON.
+fn json_word(word: &str) -> String {
+    match word.strip_prefix("None") {
+        Some(rest) if !rest.starts_with(char::is_alphanumeric) => format!("null{rest}"),
+        _ => word.to_owned(),
+    }
+}
+
+/// Text with the links of rustdoc as plain words: ``[`Name`]`` and ``[`Name`](path)`` become `Name`.
+fn without_links(text: &str) -> String {
+    let mut parts = text.split("[`");
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let Some((name, rest)) = part.split_once("`]") else {
+            plain += "[`";
+            plain += part;
+            continue;
+        };
+        let target = rest.strip_prefix('(').and_then(|rest| rest.split_once(')'));
+        plain += &format!("`{name}`{}", target.map_or(rest, |(_, rest)| rest));
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{json_word, reports, without_links};
+    use serde_json::Value;
+
+    /// All descriptions of a schema.
+    fn descriptions<'v>(schema: &'v Value, found: &mut Vec<&'v str>) {
+        match schema {
+            Value::Object(object) => {
+                found.extend(object.get("description").and_then(Value::as_str));
+                object.values().for_each(|value| descriptions(value, found));
+            }
+            Value::Array(items) => items.iter().for_each(|value| descriptions(value, found)),
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn words_of_rust_become_words_of_json() {
+        assert_eq!(["None", "None,", "NoneType", "none"].map(json_word), ["null", "null,", "NoneType", "none"]);
+        assert_eq!(without_links("a [`B`](c::B) d [`E::f`], and [`g"), "a `B` d `E::f`, and [`g");
+    }
+
+    #[test]
+    fn descriptions_of_reports_name_no_rust() {
+        let schema = reports();
+        let mut all = Vec::new();
+        descriptions(&schema, &mut all);
+        assert!(all.len() > 500, "{}", all.len());
+        let wrong =
+            |text: &&&str| text.contains("[`") || text.split(|c: char| !c.is_alphanumeric()).any(|word| word == "None");
+        let wrong: Vec<&&str> = all.iter().filter(wrong).collect();
+        assert!(wrong.is_empty(), "{wrong:#?}");
     }
 }
