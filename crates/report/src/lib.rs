@@ -216,6 +216,17 @@ impl DimensionReport {
         }
     }
 
+    /// True if its band has deviations of different size.
+    pub(crate) fn is_unequal(&self) -> bool {
+        self.tolerance.is_some_and(|[lower, upper]| lower != -upper)
+    }
+
+    /// True if its mean is the middle of its band, or if it has none.
+    pub(crate) fn is_centred(&self) -> bool {
+        let off = |[lower, upper]: [f64; 2]| self.mean - (self.nominal + (lower + upper) / 2.0);
+        self.tolerance.is_none_or(|band| off(band).abs() <= 1e-9 * (band[1] - band[0]))
+    }
+
     /// Formats the tolerance as on drawings.
     fn tolerance(&self) -> String {
         match self.tolerance {

@@ -1,7 +1,6 @@
 //! Uncertainty from the size of measured samples, for readers.
 
-use crate::document::number::{carried_ends, index, shape, share, short, yielded};
-use crate::document::rejects::Rejects;
+use crate::document::number::{carried_ends, index, shape, share, short};
 use crate::document::{Blocks, Cell, DataTable, Section};
 use sensitol_numeric::sampling::SamplingInterval;
 
@@ -20,13 +19,6 @@ pub(super) fn samples(interval: &SamplingInterval) -> String {
 /// Names of the indices of capability: of performance for measured values, of a process in control otherwise (ISO 22514-2).
 pub(crate) fn index_names(measured: bool) -> [&'static str; 2] {
     if measured { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] }
-}
-
-/// Yield of measured values: the estimate, and the interval that the number of values leaves.
-pub(crate) fn measured_yield(value: f64, interval: [f64; 2], rejects: Rejects) -> String {
-    let text = rejects.yield_text().filter(|_| rejects.are_resolved()).unwrap_or_else(|| share(1.0 - value));
-    let [low, high] = interval.map(yielded);
-    format!("yield {text}, 95 % interval {low} to {high}")
 }
 
 /// Adds intervals, one a row, for a characteristic with sigma `scale`, those of yield and Cpk only if it is `limited`.

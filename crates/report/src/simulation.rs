@@ -15,7 +15,7 @@ use crate::output_correlation::{all_limits_within, conditional, together};
 use crate::overview as glance;
 use crate::overview::OverviewLine;
 use crate::requirement::{judged, lines};
-use crate::sampling::{index_names, measured_yield, sampled};
+use crate::sampling::{index_names, sampled};
 use crate::{About, DimensionReport, Head, WarningReport, correlation};
 use sensitol::analysis::{EstimatedShare, InspectionRisks};
 use sensitol::problem::Problem;
@@ -163,10 +163,7 @@ impl SimulationSection for SimulatedCharacteristic {
         let target = judged(self.target(), self.verdict());
         let rejects = Rejects::new(self.below, self.above, self.yield_error()).within(self.reject_intervals);
         let text = rejects.yield_text().unwrap_or_else(|| yielded(yield_.value));
-        let of_all = Line::from(match (&self.sampling, self.yield_interval()) {
-            (Some(_), Some(interval)) => measured_yield(yield_.value, interval, rejects),
-            _ => format!("yield {text}, 95 % interval {low} to {high}"),
-        });
+        let of_all = Line::from(format!("yield {text}, 95 % interval {low} to {high}"));
         let conditional =
             conditional(&self.characteristic, self.conditional.as_ref(), "no assembly of the sample keeps it");
         // The target is that of the assemblies that count.
