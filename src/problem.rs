@@ -459,6 +459,18 @@ impl Problem {
         self.function.choice(self.outputs[characteristic])
     }
 
+    /// True if a characteristic follows a choice from stock and its model is costly: it takes its figures from points of the model.
+    pub(crate) fn follows_costly_choice(&self, characteristic: usize) -> bool {
+        self.function.signature().costly && self.choice(characteristic).is_some()
+    }
+
+    /// Greatest number of counted evaluations of a point: several if a costly model is evaluated for every value of a stock that is tried, or
+    /// at every step of a motion.
+    pub(crate) fn evaluations_per_point(&self) -> usize {
+        let costly = self.function.signature().costly;
+        if costly { self.function.evaluations_per_point(&self.outputs).max(1) } else { 1 }
+    }
+
     /// Row per characteristic, true for each dimension that it can depend on. A black box may depend on all.
     pub(crate) fn dependence(&self) -> Vec<Vec<bool>> {
         let outputs = &self.function.signature().outputs;

@@ -41,6 +41,8 @@ pub(crate) use crate::analysis::result::verification::TRUSTED;
 pub use crate::analysis::result::verification::{VarianceShare, Verification, VerificationKind, VerifiedFigures};
 pub use crate::analysis::result::yield_source::YieldSource;
 use crate::analysis::sampling::accuracy_target;
+pub use crate::analysis::sampling::choice_sample::choice_points;
+use crate::analysis::sampling::choice_sample::choice_samples;
 use crate::analysis::sampling::jump;
 use crate::analysis::sampling::measured_interval::sampling_intervals;
 use crate::analysis::sampling::model_sample::model_samples;
@@ -224,6 +226,8 @@ fn check(problem: &Problem, outcome: &Outcome, options: &Options, run: &Run<'_>)
     let (characteristics, shares): (Vec<_>, Vec<_>) = of_all(problem, outcome).into_iter().unzip();
     let signature = problem.function().signature();
     let verified = options.verifies(signature);
+    let chosen = choice_samples(&evaluator, outcome, options, &characteristics);
+    let characteristics = with_stage(characteristics, chosen, CharacteristicAnalysis::with_model_sample);
     // A cheap model that is verified is sampled anyway, at points that need no surface: no fallback is needed.
     let kinks = match signature.costly && verified {
         true => nominal_kink::find(&evaluator, outcome, &characteristics),
@@ -426,7 +430,11 @@ fn of_all(problem: &Problem, outcome: &Outcome) -> Vec<(CharacteristicAnalysis, 
     let of = |c: usize| {
         let (one, shares) = CharacteristicAnalysis::of(problem, outcome, c);
         match problem.choice(c) {
-            Some(_) => (one.without_linear(&dependence.get_or_init(|| problem.dependence())[c]), shares),
+            Some(_) => {
+                let one = one.without_linear(&dependence.get_or_init(|| problem.dependence())[c]);
+                let by_points = problem.follows_costly_choice(c) && !one.constant;
+                if by_points { (one.without_surface(), None) } else { (one, shares) }
+            }
             None => (one, shares),
         }
     };

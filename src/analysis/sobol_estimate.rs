@@ -62,7 +62,7 @@ impl CharacteristicAnalysis {
     /// Share of the variance that the surface leaves unexplained, if the model was evaluated for it.
     pub fn left(&self) -> Option<f64> {
         let verified = self.evidence.verification.as_ref().and_then(|of| of.left);
-        verified.or(self.evidence.model_sampled.as_ref().map(|of| of.left))
+        verified.or(self.evidence.model_sampled.as_ref().map(|of| of.left.unwrap_or(1.0)))
     }
 
     /// Error of a share of the surface as a share of the model. Returns None if it is unknown.

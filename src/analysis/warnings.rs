@@ -91,6 +91,16 @@ pub(super) fn of(
     if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible && open {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
+    let chosen: Vec<usize> = (0..characteristics.len()).filter(|&c| problem.follows_costly_choice(c)).collect();
+    let is_chosen = |name: &str| chosen.iter().any(|&c| characteristics[c].characteristic.name() == name);
+    warnings.retain(|warning| !is_of_surface(warning) || !warning.characteristic().is_some_and(is_chosen));
+    warnings.extend(chosen.into_iter().filter_map(|c| {
+        let one = &characteristics[c];
+        let characteristic = one.characteristic.name().to_owned();
+        one.moments
+            .is_none()
+            .then(|| Warning::ChoiceNotSampled { characteristic, choice: problem.choice(c).unwrap_or_default() })
+    }));
     // A kink at the nominal point is the more precise finding, and answers next to it do not scatter.
     let at_nominal: Vec<String> = warnings.iter().filter_map(kinked).collect();
     warnings.retain(|warning| {
@@ -98,6 +108,24 @@ pub(super) fn of(
         !general || !at_nominal.iter().any(|name| warning.characteristic() == Some(name))
     });
     aggregated(warnings)
+}
+
+/// True for a warning about a surface. It says nothing of a characteristic that follows a choice from stock, whose figures are those of points.
+fn is_of_surface(warning: &Warning) -> bool {
+    matches!(
+        warning,
+        Warning::HigherOrder { .. }
+            | Warning::Kink { .. }
+            | Warning::KinkAtNominal { .. }
+            | Warning::Discontinuity { .. }
+            | Warning::Scatter { .. }
+            | Warning::FarResidual { .. }
+            | Warning::ShallowRules { .. }
+            | Warning::PoorFit { .. }
+            | Warning::InteractionsLeftOut { .. }
+            | Warning::UnderResolved { .. }
+            | Warning::UntrustedSurrogate { .. }
+    )
 }
 
 /// Name of a characteristic with a kink at the nominal point.

@@ -105,6 +105,13 @@ impl<'a> Evaluator<'a> {
         Self { budget, ..self }
     }
 
+    /// Sets the greatest number of points; None for no limit.
+    #[must_use]
+    pub fn with_points(self, points: Option<usize>) -> Self {
+        let budget = points.map(|points| points.saturating_mul(self.problem.evaluations_per_point()));
+        self.with_budget(budget)
+    }
+
     /// Sets the seed of random points.
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
@@ -122,7 +129,7 @@ impl<'a> Evaluator<'a> {
         Self {
             problem: self.problem,
             run: self.run,
-            budget: self.remaining(),
+            budget: self.remaining_evaluations(),
             seed: self.seed,
             ledger: Mutex::default(),
         }
@@ -143,8 +150,13 @@ impl<'a> Evaluator<'a> {
         self.seed
     }
 
-    /// Evaluations that are left of the budget. None if there is no limit.
+    /// Number of points that the evaluations left of the budget allow. None if there is no limit. A point takes several evaluations if a
+    /// value is chosen from stock for it, or if the assembly moves.
     pub fn remaining(&self) -> Option<usize> {
+        self.remaining_evaluations().map(|left| left / self.problem.evaluations_per_point())
+    }
+
+    fn remaining_evaluations(&self) -> Option<usize> {
         self.budget.map(|budget| budget.saturating_sub(self.locked().evaluations()))
     }
 

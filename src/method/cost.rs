@@ -41,6 +41,8 @@ pub(super) fn affordable(
     options: &Options,
     dimensions: usize,
 ) -> Result<(), MethodError> {
+    // A point takes several evaluations if a value is chosen from stock for it, or if the assembly moves.
+    let needed = needed * problem.evaluations_per_point() as u128;
     let limit = options.budget.map_or(EvaluationLimit::WithoutBudget, |_| EvaluationLimit::Listed);
     let most = options.budget.unwrap_or(usize::MAX).min(limit.most());
     if needed <= most as u128 {
@@ -60,7 +62,8 @@ pub(super) fn fitting(problem: &Problem, budget: usize) -> Option<(Method, usize
     [Method::Full, Method::SixN, Method::SecondOrder]
         .into_iter()
         .filter_map(|method| {
-            let cost = method.procedure().plan(problem, &Options::from(method)).ok()?.cost().0;
+            let points = method.procedure().plan(problem, &Options::from(method)).ok()?.cost().0;
+            let cost = points.saturating_mul(problem.evaluations_per_point());
             (cost <= budget).then_some((method, cost))
         })
         .max_by_key(|&(_, cost)| cost)

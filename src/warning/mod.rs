@@ -482,6 +482,13 @@ warnings! {
         /// The dimensions concerned.
         dimensions: Vec<String>,
     };
+    /// A characteristic of a costly model follows a choice from stock, and no points of the model were sampled.
+    ChoiceNotSampled = "choice-not-sampled" by surface::choice_not_sampled {
+        /// The characteristic.
+        characteristic: String,
+        /// The choice in words.
+        choice: String,
+    };
     /// A characteristic jumps within the tolerances.
     Discontinuity = "discontinuity" by surface::discontinuity {
         /// The characteristic.

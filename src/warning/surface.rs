@@ -78,6 +78,13 @@ pub(super) fn kink_at_nominal(characteristic: &str, dimensions: &[String]) -> Te
     .advise(Advice::Sample { points: None })
 }
 
+pub(super) fn choice_not_sampled(characteristic: &str, choice: &str) -> Text {
+    say(format!(
+        "No surface follows {choice}, and no points of the model were sampled after it. The figures of `{characteristic}` are unknown."
+    ))
+    .advise(Advice::Sample { points: None })
+}
+
 pub(super) fn discontinuity(
     characteristic: &str,
     dimension: &str,

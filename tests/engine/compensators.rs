@@ -2,13 +2,14 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol::analysis::Sensitivity;
+use sensitol::analysis::{FigureBasis, Sensitivity, choice_points};
 use sensitol::assembly::{Adjustment, AssemblyFunction, Closure, Directions, Points, Request, Responses, Run};
 use sensitol::assembly::{Motion, MotionEnd, MotionExtremes, StockResponse};
 use sensitol::simulation::{Simulation, SimulationOptions, simulate};
-use sensitol::{Analysis, Dimension, Problem, Verdict, analyze};
+use sensitol::{Analysis, Dimension, Method, Options, Problem, Verdict, analyze};
 use sensitol_study::{Study, StudyText};
-use sensitol_testing::{data, relative, repository};
+
+use sensitol_testing::{costly, data, relative, repository};
 
 fn study(name: &str) -> Study {
     Study::read(&repository(&format!("tests/data/compensators/{name}.toml"))).unwrap()
@@ -42,6 +43,12 @@ fn check(name: &str, sample: &Simulation, analysis: &Analysis) {
             near(&what, (share.value, 0.25 * (share.interval[1] - share.interval[0])), exact, "yield");
         }
     }
+    check_analysis(name, analysis);
+}
+
+/// Asserts that the figures of an analysis lie within its errors of the oracles.
+fn check_analysis(name: &str, analysis: &Analysis) {
+    let exact = data("compensators.json")[name].clone();
     for one in &analysis.characteristics {
         let exact = &exact[one.characteristic.name()];
         let what = format!("analysed {}", one.characteristic.name());
@@ -61,6 +68,83 @@ fn samples_and_analyses_agree_with_the_oracles() {
         let options = SimulationOptions::default().with_samples(1 << 17);
         check(name, &simulate(&study.problem, &options).unwrap(), &analyze(&study.problem, &study.options).unwrap());
     }
+}
+
+/// The study of the shim with a costly black box, whose shim is chosen from the same stock.
+fn costly_shim() -> Problem {
+    let text = std::fs::read_to_string(repository("tests/data/compensators/shim.toml")).unwrap();
+    let plain = of_text(text.split("[[adjust]]").next().unwrap()).problem;
+    let stock: Vec<f64> = (19..=25).map(|step| f64::from(step) * 0.05).collect();
+    let shim = Adjustment { input: 4, nominal: 1.0, stock, to: 0, target: 0.08, response: StockResponse::Any };
+    costly(&plain).0.adjusted(vec![shim])
+}
+
+/// A costly model that follows a choice has the figures of plain points, whose count the plan states, and no remark about a surface.
+#[test]
+fn a_costly_choice_is_sampled() {
+    let problem = costly_shim();
+    let options = Options::default();
+    assert_eq!(choice_points(&problem, &options, 0), 512);
+    let found = analyze(&problem, &options).unwrap();
+    check_analysis("shim", &found);
+    for one in &found.characteristics {
+        let sampled = one.evidence.model_sampled.as_ref().unwrap();
+        assert_eq!((sampled.samples, sampled.left), (512, None));
+        assert!(one.evidence.verification.is_none() && one.evidence.tail_sampled.is_none());
+        assert_eq!(one.bases().yield_, Some(FigureBasis::Points));
+        // The interval of a share of 512 points, of which ten are seen within or beyond at least: at most 4.4 % on either side.
+        let [low, high] = one.yield_interval().unwrap();
+        assert!(high - low > 0.02 && high - low < 0.09, "{low} {high}");
+    }
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    // A choice tries seven values, and the point itself is evaluated after it.
+    assert!(found.run.evaluations >= 512 * 8 && found.run.evaluations < 512 * 8 + 800, "{}", found.run.evaluations);
+}
+
+fn budgeted(budget: usize) -> Options {
+    let mut options = Options::default();
+    options.budget = Some(budget);
+    options
+}
+
+/// A budget is kept, and one that allows too few points leaves the yield open.
+#[test]
+fn a_costly_choice_keeps_its_budget() {
+    let problem = costly_shim();
+    for budget in [400, 1500, 9000] {
+        let options = budgeted(budget);
+        let found = analyze(&problem, &options).unwrap();
+        assert!(found.run.evaluations <= budget as u64, "{budget}: {}", found.run.evaluations);
+        for one in &found.characteristics {
+            let is_sampled = budget > 1000;
+            assert_eq!(one.evidence.model_sampled.is_some(), is_sampled, "{budget}");
+            // What no surface follows is unknown without points.
+            assert_eq!((one.moments.is_some(), one.yield_interval().is_some()), (is_sampled, is_sampled), "{budget}");
+        }
+        let unsampled = found.warnings.iter().filter(|warning| warning.code() == "choice-not-sampled").count();
+        assert_eq!(unsampled, if budget > 1000 { 0 } else { 2 }, "{budget}: {:?}", found.warnings);
+    }
+    // The intervals of 95 % hold the right yields in 34 of 40 runs at least: fewer would happen once in 250 times by chance.
+    let mut held = [0; 2];
+    for seed in 1..=40 {
+        let mut options = budgeted(1500);
+        options.seed = Some(seed);
+        for (held, one) in held.iter_mut().zip(&analyze(&problem, &options).unwrap().characteristics) {
+            let exact = data("compensators.json")["shim"][one.characteristic.name()]["yield"].as_f64().unwrap();
+            let [low, high] = one.yield_interval().unwrap();
+            *held += usize::from(low <= exact && exact <= high);
+        }
+    }
+    assert!(held.iter().all(|&held| held >= 34), "{held:?} of 40");
+    let found = analyze(&problem, &Options::from(Method::Full)).unwrap();
+    assert!(found.characteristics.iter().all(|one| one.moments.is_none() && one.yield_interval().is_none()));
+    // Another method, a cheap model and a study without a choice need no such points.
+    let rss = Options::from(Method::Rss);
+    assert_eq!(
+        [choice_points(&problem, &rss, 0), choice_points(&study("shim").problem, &Options::default(), 0)],
+        [0, 0]
+    );
+    assert_eq!(choice_points(&problem, &budgeted(300), 0), 0);
 }
 
 /// A box sampler of the study's dimensions, over their bands.

@@ -163,7 +163,7 @@ fn no_file_is_much_over_600_lines() {
         let most = match file.name().as_str() {
             "crates/cli/src/main.rs" => 40,
             // One list of all warnings.
-            "src/warning/mod.rs" => 790,
+            "src/warning/mod.rs" => 800,
             _ => 640,
         };
         assert!(lines <= most, "{} has {lines} lines: split it by idea", file.name());

@@ -19,8 +19,9 @@ pub struct SampledModel {
     pub failed: u64,
     /// Error of the first of them.
     pub error: Option<String>,
-    /// Share of the variance that the surrogate left unexplained at the check points.
-    pub left: f64,
+    /// Share of the variance that the surrogate left unexplained at the check points. None if no surrogate is a control variate, because the
+    /// characteristic follows a choice from stock.
+    pub left: Option<f64>,
     /// Standard errors of mean, sigma, skewness and kurtosis. None if unknown.
     #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
     #[cfg_attr(feature = "schema", schemars(with = "Four<Option<f64>>"))]

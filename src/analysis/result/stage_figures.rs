@@ -163,6 +163,27 @@ impl CharacteristicAnalysis {
         }
     }
 
+    /// Leaves out the figures of a surface where none follows the model.
+    pub(in crate::analysis) fn without_surface(self) -> Self {
+        let without_shares = |one| Sensitivity {
+            linear_share: None,
+            curvature_share: None,
+            mean_shift: None,
+            first_order: None,
+            total: None,
+            ..one
+        };
+        Self {
+            moments: None,
+            error_estimate: None,
+            sensitivities: self.sensitivities.into_iter().map(without_shares).collect(),
+            distribution: DistributionFigures { capability: None, ..self.distribution },
+            range: RangeFigures { curved: None, ..self.range },
+            evidence: Evidence { sampled: None, residual: None, law: None, normal: None, ..self.evidence },
+            ..self
+        }
+    }
+
     /// Replaces the moments, and the distributions that follow from them.
     fn with_moments(self, MomentFigures { moments, law, capability, normal }: MomentFigures) -> Self {
         Self {

@@ -232,7 +232,7 @@ impl<'p> CrossFit<'p> {
                 samples: valid.len() as u64,
                 failed: *failed as u64,
                 error: error.as_ref().map(ToString::to_string),
-                left,
+                left: Some(left),
                 standard_errors: [0, 1, 2, 3].map(|i| Some(best.errors[i])),
                 yield_: limits.exist().then(|| share(MOMENTS + 2)),
                 yield_interval: limits.exist().then(|| around(MOMENTS + 2)),

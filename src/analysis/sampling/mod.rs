@@ -3,6 +3,7 @@
 pub(in crate::analysis) mod accuracy_target;
 pub(in crate::analysis) mod axis_effect;
 pub(in crate::analysis) mod bootstrap;
+pub(in crate::analysis) mod choice_sample;
 pub(in crate::analysis) mod cross_fit;
 pub(in crate::analysis) mod jump;
 pub(in crate::analysis) mod known_answers;

@@ -21,7 +21,7 @@ use sensitol_numeric::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error}
 /// Greatest number of points of a cheap model.
 const MOST: u64 = 1 << 18;
 /// Smallest number of points for which the sample of a costly model is useful.
-const FEWEST: u64 = 48;
+pub(super) const FEWEST: u64 = 48;
 /// Smallest number of points of the first sample.
 const FIRST: u64 = 1 << 10;
 /// Greatest number of points of strides with regressions. If the accuracy is not reached with them, a regression does not follow the model,
@@ -42,11 +42,15 @@ pub(in crate::analysis) fn model_samples(
     let nothing = Vec::new();
     let (problem, run, seed) = (evaluator.problem(), evaluator.run(), evaluator.seed());
     let begun = evaluator.summary().evaluations;
-    let spent = || evaluator.summary().evaluations - begun;
+    // In points, of which each may take several evaluations.
+    let each = problem.evaluations_per_point() as u64;
+    let spent = || (evaluator.summary().evaluations - begun).div_ceil(each);
     let Some(climbed) = outcome.climbed.as_ref().filter(|_| outcome.evaluated.stopped().is_none()) else {
         return nothing;
     };
-    let is_short = |&c: &usize| kinked.contains(&c) || shortfall(&characteristics[c], climbed, c).is_some();
+    let is_open = |&c: &usize| characteristics[c].evidence.model_sampled.is_none();
+    let is_short =
+        |&c: &usize| is_open(&c) && (kinked.contains(&c) || shortfall(&characteristics[c], climbed, c).is_some());
     let short: Vec<usize> = (0..characteristics.len()).filter(is_short).collect();
     if short.is_empty() {
         return nothing;
@@ -56,7 +60,7 @@ pub(in crate::analysis) fn model_samples(
     // A costly model is sampled only within its budget.
     let most = match (costly, evaluator.remaining().map(|left| left as u64)) {
         (true, None) if kinked.is_empty() => 0,
-        (true, None) => begun.max(FEWEST),
+        (true, None) => (begun / each).max(FEWEST),
         (true, Some(left)) => left,
         (false, left) => left.unwrap_or(MOST).min(MOST),
     };
@@ -105,7 +109,8 @@ pub(in crate::analysis) fn model_samples(
                 let depends = outcome.plan.varying().iter().copied().filter(|&d| outcome.plan.depends(c, d));
                 let ranks = recorded.ranks(c, &depends.collect::<Vec<usize>>());
                 let found = (&found.characteristics[c], few_scramblings);
-                Some((c, of_simulation(&characteristics[c], climbed, c, found, ranks)?))
+                let one = &characteristics[c];
+                Some((c, of_simulation(one, Some(left(one, climbed, c)), found, ranks)?))
             };
             return short.iter().filter_map(of).collect();
         }
@@ -202,11 +207,10 @@ fn known(found: &SimulatedCharacteristic, climbed: &AutoAccount) -> bool {
     within(sigma, climbed.accuracy) && climbed.accuracies.wanted().into_iter().all(each)
 }
 
-/// Figures of a simulation. Returns None if a moment is unknown.
-fn of_simulation(
+/// Figures of a simulation, beside a surface that leaves the share `left` of the variance unexplained, or beside none. Returns None if a moment is unknown.
+pub(super) fn of_simulation(
     one: &CharacteristicAnalysis,
-    climbed: &AutoAccount,
-    c: usize,
+    left: Option<f64>,
     (found, few): (&SimulatedCharacteristic, f64),
     ranks: Vec<(usize, Share)>,
 ) -> Option<ModelSampleFigures> {
@@ -220,7 +224,7 @@ fn of_simulation(
         samples: found.samples,
         failed: found.failed,
         error: found.error.as_ref().map(ToString::to_string),
-        left: left(one, climbed, c),
+        left,
         standard_errors,
         yield_: found.yield_.map(|share| share.value),
         yield_interval: found.yield_.map(|share| share.interval),

@@ -68,7 +68,9 @@ pub(in crate::analysis) fn find(
 /// Axes of a characteristic with a rise alike on both sides, the steepest first.
 fn symmetric(outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Vec<SymmetricAxis> {
     let plan = &outcome.plan;
-    let Some(sigma) = one.moments.map(|moments| moments.sigma()).filter(|&sigma| sigma > 0.0) else {
+    // Figures of points need no surface, and its kinks are no finding then.
+    let by_surface = one.evidence.model_sampled.is_none();
+    let Some(sigma) = one.moments.map(|moments| moments.sigma()).filter(|&sigma| by_surface && sigma > 0.0) else {
         return Vec::new();
     };
     let axis = |&d: &usize| {

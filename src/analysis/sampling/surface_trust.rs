@@ -174,7 +174,7 @@ fn climb(
             error: error.clone(),
         });
     }
-    let share = sampled.map_or(check.variance / (sigma * sigma), |sampled| sampled.left);
+    let share = sampled.map_or(check.variance / (sigma * sigma), |sampled| sampled.left.unwrap_or(1.0));
     if share > UNTRUSTED {
         let sampled = sampled.map(|sampled| sampled.samples);
         warnings.push(Warning::UntrustedSurrogate { characteristic: characteristic(), share, sampled });

@@ -15,15 +15,18 @@ use sensitol_numeric::verdict::Verdict;
 /// Greatest number of points within a budget: as many as `simulate` takes for rare events of an external program.
 const MOST: usize = 1000;
 
-/// Greatest number of points of the model in refuted tails, after `spent` evaluations. Only `auto` of a costly model with limits has any.
+/// Greatest number of points of the model in refuted tails, after `spent` points. Only `auto` of a costly model with limits has any.
 pub fn most_tail_points(problem: &Problem, options: &Options, spent: usize) -> usize {
     let signature = problem.function().signature();
-    let limited = problem.characteristics().iter().any(|one| one.limits().exist());
+    let limited = (problem.characteristics().iter().enumerate())
+        .any(|(c, one)| one.limits().exist() && !problem.follows_costly_choice(c));
     let verified = signature.costly && options.verify.is_none() && options.verifies(signature);
     let asked =
         options.sample_tails && options.method == Method::Auto && options.derivatives != Some(DerivativeSource::Exact);
     match asked && limited && verified {
-        true => options.budget.map_or(MOST_TAIL_POINTS, |budget| budget.saturating_sub(spent).min(MOST)),
+        true => options.budget.map_or(MOST_TAIL_POINTS, |budget| {
+            (budget / problem.evaluations_per_point()).saturating_sub(spent).min(MOST)
+        }),
         false => 0,
     }
 }
@@ -38,7 +41,8 @@ pub(in crate::analysis) fn decide(
     refuted: &[RefutedTail],
     characteristics: &[CharacteristicAnalysis],
 ) -> Vec<(usize, TailFigures)> {
-    let spent = outcome.evaluated.ledger.evaluations();
+    let each = evaluator.problem().evaluations_per_point();
+    let spent = outcome.evaluated.ledger.evaluations().div_ceil(each);
     let most = most_tail_points(evaluator.problem(), options, spent).min(evaluator.remaining().unwrap_or(usize::MAX));
     if most == 0 || evaluator.run().stopped() {
         return Vec::new();

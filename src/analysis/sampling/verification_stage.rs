@@ -66,8 +66,11 @@ pub(in crate::analysis) fn verify(
     {
         return Vec::new();
     }
-    // Points of the model have replaced a surface with a kink at the nominal point. Their errors need no surface.
-    let replaced = |c: usize, one: &CharacteristicAnalysis| kinked.contains(&c) && one.evidence.model_sampled.is_some();
+    // Points of the model have replaced a surface with a kink at the nominal point. Their errors need no surface. Nor has a characteristic one
+    // that follows a choice from stock.
+    let replaced = |c: usize, one: &CharacteristicAnalysis| {
+        one.evidence.model_sampled.is_some() && kinked.contains(&c) || problem.follows_costly_choice(c)
+    };
     let (mut found, mut open) = (Vec::new(), Vec::new());
     for (c, one) in characteristics.iter().enumerate().filter(|&(c, one)| !replaced(c, one)) {
         match proven(outcome, c, one) {
@@ -303,11 +306,11 @@ fn check(
         .collect();
     let most = check_points(asked, varying.len());
     // A number that was requested is kept. Within it, and without one, a refuted surface takes up to `MOST_LOCATING` points more.
-    let budget = match (asked, evaluator.remaining()) {
+    let points = match (asked, evaluator.remaining()) {
         (Some(asked), left) => Some(left.map_or(asked, |left| left.min(asked))),
         (None, left) => left,
     };
-    let part = evaluator.part().with_budget(budget);
+    let part = evaluator.part().with_points(points);
     let Some(checked) = verify_by_checks(&part, varying, &targets, most) else { return Vec::new() };
     // Points without an answer give no information.
     let answered = open.iter().copied().filter(|&c| !checked.unanswered[c]);

@@ -111,7 +111,7 @@ pub(super) struct Climb<'p> {
 impl<'p> Climb<'p> {
     pub(super) fn new(problem: &'p Problem, plan: DifferencePlan, accuracy: f64, options: &Options) -> Self {
         let refined = vec![false; plan.varying().len()];
-        let budget = options.budget.unwrap_or(usize::MAX);
+        let budget = options.budget.map_or(usize::MAX, |budget| budget / problem.evaluations_per_point());
         let mut climb = Self {
             problem,
             plan,
@@ -155,7 +155,7 @@ impl<'p> Climb<'p> {
 
     /// Returns the next points after those that the evaluator has in its ledger, or None if the refinement is over.
     pub(super) fn next(&mut self, known: &KnownAnswers, evaluator: &Evaluator<'_>) -> Option<Stage> {
-        self.spent = evaluator.evaluations();
+        self.spent = evaluator.evaluations().div_ceil(self.problem.evaluations_per_point());
         loop {
             let mut stage = self.wanted(known);
             if !stage.points.is_empty() {
@@ -237,9 +237,11 @@ impl<'p> Climb<'p> {
             }
         }
         // Every estimate is within the error of this step: confirm it once if it is close, then go to the next step.
-        let short: Vec<&View> = views.iter().filter(|view| view.error() > self.accuracy).collect();
+        // Points of the model give the figures of a costly choice from stock: no derivative follows its jumps.
+        let refined = |view: &&View| !self.problem.follows_costly_choice(view.characteristic);
+        let short: Vec<&View> = views.iter().filter(refined).filter(|view| view.error() > self.accuracy).collect();
         if short.is_empty() {
-            let doubtful = views.iter().any(|view| view.error() > CONFIRM * self.accuracy);
+            let doubtful = views.iter().filter(refined).any(|view| view.error() > CONFIRM * self.accuracy);
             if doubtful && self.sets == 1 && self.positions() >= CONFIRM_FROM && self.check() {
                 return true;
             }

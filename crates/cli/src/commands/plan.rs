@@ -11,7 +11,7 @@ use crate::files::Files;
 use crate::output::{Look, json};
 use crate::own_file::Content;
 use crate::{points, study};
-use sensitol::analysis::most_tail_points;
+use sensitol::analysis::{choice_points, most_tail_points};
 use sensitol::method::{DerivativeSource, ReducedInputs};
 use sensitol::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use sensitol::problem::Problem;
@@ -50,6 +50,8 @@ pub(crate) struct PlanReport {
     checks: Option<usize>,
     /// Greatest number of further points in tails at whose limits check points refute the surface; 0 if there are none.
     tail_points: usize,
+    /// Plain points of the model for characteristics that follow a choice from stock; 0 if there are none.
+    choice_points: usize,
     /// Evaluations that replay answers of an external program in fresh processes, at most; 0 for other models.
     replays: usize,
     /// True if a search of the extremes follows, whose points depend on the answers.
@@ -97,7 +99,7 @@ pub(crate) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     let externals = Externals::default().with_unanswered(asked.write_points.is_some());
     let study = study::read(&asked.study, externals)?;
     let mut files = Files::of(&asked.study.study, &study, None).forced(asked.output.force);
-    let destination = files.output(&asked.output)?;
+    let destination = files.output_text(&asked.output)?;
     let header = points::of_model(&study.problem, &[]);
     let written = files.file_of(asked.write_points.as_deref(), &Content::Points { header: &header })?;
     let procedure = study.options.method.procedure();
@@ -125,17 +127,23 @@ pub(crate) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         rounds: stages,
         largest_batch: of_first.max(evaluations.saturating_sub(of_first)),
         stages: vec![of_stage(first)],
-        checks: match study.options.verifies(study.problem.function().signature()) {
+        checks: match study.options.verifies(study.problem.function().signature())
+            && !all_follow_choices(&study.problem)
+        {
             false => Some(0),
             true => (study.problem.function().signature().costly)
                 .then(|| check_points(study.options.verify, plan.varying().len())),
         },
         tail_points: most_tail_points(&study.problem, &study.options, evaluations),
+        choice_points: choice_points(&study.problem, &study.options, evaluations),
         replays: 0,
         extremes: study.options.extremes,
         dimensions: plan.varying().iter().map(|&d| axis(problem, &*plan, d)).collect(),
     };
-    let answers = report.range.map_or(evaluations, |[_, most]| most) + report.checks.unwrap_or(0) + report.tail_points;
+    let answers = report.range.map_or(evaluations, |[_, most]| most)
+        + report.checks.unwrap_or(0)
+        + report.tail_points
+        + report.choice_points;
     report.replays = study.problem.function().own_checks(answers);
     if stages > 1 {
         let left = evaluations - of_first;
@@ -156,6 +164,12 @@ pub(crate) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         false => text(&report.document(), look.style(&asked.output)),
     })?;
     Ok(Exit::Done)
+}
+
+/// True if the figures of all characteristics of a costly model are those of points after a choice from stock, so that none has check points.
+fn all_follow_choices(problem: &Problem) -> bool {
+    let function = problem.function();
+    function.signature().costly && problem.outputs().iter().all(|&output| function.choice(output).is_some())
 }
 
 fn of_stage(counts: BTreeMap<Purpose, usize>) -> StageReport {
@@ -228,6 +242,12 @@ impl PlanReport {
             document.line(
                 "and points of the model itself where no surrogate is to be trusted and --budget, or a cheap model, allows",
             );
+        }
+        if self.choice_points > 0 {
+            document.line(format!(
+                "then {} points of the model for what follows a choice from stock, whose jumps no surface describes",
+                self.choice_points
+            ));
         }
         if let Some(checks) = self.checks.filter(|&checks| checks > 0) {
             document.line(format!("then up to {checks} check points, placed by the answers, that verify the results"));

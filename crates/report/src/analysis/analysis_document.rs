@@ -23,7 +23,7 @@ use crate::head::findings;
 use crate::inspection::inspected;
 use crate::output_correlation::{all_limits, conditional, together, together_table};
 use crate::requirement::{judged, lines};
-use crate::sampling::{index_names, measured_yield, sampled};
+use crate::sampling::{index_names, sampled};
 use crate::{DimensionReport, Report};
 use sensitol::analysis::{CharacteristicAnalysis, Sensitivity, YieldSource};
 use sensitol::extremes::{Extreme, Place};
@@ -247,6 +247,8 @@ impl CharacteristicSections for CharacteristicAnalysis {
         match &self.evidence.verification {
             Some(found) => section.note(found.words()),
             // No remark if there are no moments, or if nothing that varies has an effect.
+            // Points of the model need no verification.
+            None if self.evidence.model_sampled.is_some() => {}
             None if self.mean().is_some() && !self.constant => section.note(not_verified(self.error_estimate.as_ref())),
             None => {}
         }
@@ -266,10 +268,14 @@ impl CharacteristicSections for CharacteristicAnalysis {
             detail.wrapped(2, format!("error estimates are based on: {}", basis.join("; ")));
         }
         if let Some(sampled) = self.error_estimate.as_ref().and(self.evidence.model_sampled.as_ref()) {
-            section.wrapped(2, format!(
-                "the surface is not trusted: mean to kurtosis from {} points of the model, with the surface as control variate",
-                sampled.samples
-            ));
+            let points = format!("mean to kurtosis from {} points of the model", sampled.samples);
+            section.wrapped(
+                2,
+                match sampled.left {
+                    Some(_) => format!("the surface is not trusted: {points}, with the surface as control variate"),
+                    None => format!("{points}: no surface follows a choice from stock"),
+                },
+            );
         }
         if let Some(of) = self.coefficient_of_variation() {
             let percent = within(100.0 * of.value, 4, Some(100.0 * of.error));
@@ -439,10 +445,7 @@ impl CharacteristicSections for CharacteristicAnalysis {
     fn yield_line(&self) -> String {
         match &self.distribution.distribution_free_yield {
             Some(free) => format!("yield {}", distribution_free(free)),
-            None => match self.evidence.sampling.as_ref().and(self.yield_()).zip(self.yield_interval()) {
-                Some((value, interval)) => measured_yield(value, interval, self.rejects()),
-                None => yield_line(&self.rejects()),
-            },
+            None => yield_line(&self.rejects()),
         }
     }
 

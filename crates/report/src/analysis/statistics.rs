@@ -86,9 +86,14 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         };
         let [of_mean, of_sigma] = [of(|of| of.mean), of(|of| of.sigma)];
         let [of_skewness, of_kurtosis] = [of(|of| of.skewness), of(|of| of.kurtosis)];
+        // Without a sigma the nominal value has its own digits.
+        let nominal = |value: f64| match self.sigma() {
+            Some(_) => carried(value, scale, None),
+            None => significant(value, 6),
+        };
         let shift = self.mean().zip(self.nominal).map(|(mean, nominal)| mean - nominal);
         [
-            shown(FIRST_FIGURE, self.nominal, &|value| carried(value, scale, None), String::new()),
+            shown(FIRST_FIGURE, self.nominal, &nominal, String::new()),
             shown("mean", self.mean(), &|value| carried(value, scale, of_mean), error(of_mean)),
             shown("shift", shift, &|value| carried(value, scale, of_mean), String::new()),
             shown("sigma", self.sigma(), &|value| carried(value, scale, of_sigma), error(of_sigma)),
@@ -175,9 +180,10 @@ impl CharacteristicStatistics for CharacteristicAnalysis {
         let unknown = || Cell::text(UNKNOWN.to_owned());
         // A choice among parts leaves no slopes. Empty columns would push the last one into a second block.
         let has_slopes = all.iter().filter_map(Contributor::alone).any(|(row, _)| row.first.is_some());
-        // A tolerance belongs to the nominal value: beside the mean of an unequal one it would be misread.
-        let unequal = |row: (_, &DimensionReport)| row.1.tolerance.is_some() && row.1.mean != row.1.nominal;
-        let is_nominal = all.iter().filter_map(Contributor::alone).any(|(row, of)| unequal((row, of)));
+        // A tolerance belongs to the nominal value: beside the mean of an unequal one it would be misread. A mean that lies elsewhere than in
+        // the middle of its band, such as a measured one, is not left out.
+        let alone = || all.iter().filter_map(Contributor::alone).map(|row| row.1);
+        let is_nominal = alone().any(DimensionReport::is_unequal) && alone().all(DimensionReport::is_centred);
         let place = move |of: &DimensionReport| match is_nominal && of.tolerance.is_some() {
             true => Cell::number(of.nominal, plain),
             false => Cell::number(of.mean, |mean| own_mean(of, mean)),

@@ -241,6 +241,7 @@ fn every() -> Vec<Warning> {
         },
         Warning::ShallowRules { characteristic: characteristic(), share: 0.292 },
         Warning::PoorFit { characteristic: characteristic(), residual: 0.12 },
+        Warning::ChoiceNotSampled { characteristic: characteristic(), choice: "the choice of `shim`".to_owned() },
         Warning::KinkAtNominal { characteristic: characteristic(), dimensions: names(3) },
         Warning::Kink {
             characteristic: characteristic(),
