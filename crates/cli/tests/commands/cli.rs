@@ -296,7 +296,6 @@ fn what_is_read_is_never_written() {
     std::fs::create_dir(folder.path().join("sub")).unwrap();
     let around = at("sub/../study.toml");
     let mut tries: Vec<(Vec<&str>, &str, &str)> = vec![
-        (vec!["analyze", &study, "--html", &study], &study, "the study itself"),
         (vec!["analyze", &study, "-o", &study], &study, "the study itself"),
         (vec!["analyze", &study, "-o", &around], &around, "the study itself"),
         (vec!["analyze", &study, "-o", &csv], &csv, "measured data of the study"),
@@ -304,7 +303,7 @@ fn what_is_read_is_never_written() {
         (vec!["plan", &study, "-o", &csv], &csv, "measured data of the study"),
         (vec!["sweep", &study, "--over", "b=1:2:3", "--svg", &study], &study, "the study itself"),
         (vec!["compare", &study, "--svg", &study], &study, "the study itself"),
-        (vec!["simulate", &study, "--html", &csv], &csv, "measured data of the study"),
+        (vec!["simulate", &study, "-o", &csv], &csv, "measured data of the study"),
         (vec!["simulate", &study, "--rare", "-o", &study], &study, "the study itself"),
         (vec!["allocate", &study, "--write", &csv], &csv, "measured data of the study"),
         (vec!["probe", &study, "-o", &study], &study, "the study itself"),

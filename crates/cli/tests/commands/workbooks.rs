@@ -433,8 +433,9 @@ fn workbooks_are_written_as_other_files_are() {
     let [_, error] = run(2, &["analyze", &at("a.toml"), &at("b.toml"), "--xlsx", &at("one.xlsx")]);
     assert!(error.contains("--xlsx") && error.contains("need a folder for their workbooks"), "{error}");
     let [_, error] = run(2, &["analyze", &at("a.toml"), "--xlsx", &at("a.toml")]);
-    assert!(error.contains("the study itself"), "{error}");
-    let [_, error] = run(2, &["analyze", &at("a.toml"), "--xlsx", &at("x.xlsx"), "--html", &at("x.xlsx")]);
+    assert!(error.contains("a workbook is written as .xlsx"), "{error}");
+    assert_eq!(std::fs::read_to_string(at("a.toml")).unwrap(), STACK);
+    let [_, error] = run(2, &["analyze", &at("a.toml"), "--xlsx", &at("x.xlsx"), "-o", &at("x.xlsx")]);
     assert!(error.contains("x.xlsx") && !Path::new(&at("x.xlsx")).exists(), "{error}");
     let [_, error] = run(2, &["analyze", &at("a.toml"), "--xlsx", &at("nowhere/x.xlsx")]);
     assert!(error.contains("there is no folder"), "{error}");
