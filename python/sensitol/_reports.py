@@ -60,7 +60,7 @@ class AllocatedCharacteristic(Record):
     """One characteristic before and after."""
 
     after: Optional[CharacteristicResult]
-    """Results of `analyze` at the tolerances found; null if none were found."""
+    """Results of `analyze` at the tolerances found; None if none were found."""
     before: CharacteristicResult
     """Results of `analyze` at the tolerances before."""
     name: str
@@ -119,7 +119,7 @@ class AllocatedToleranceDeviations(Record):
 
 
 class AllocationResult(Result):
-    """The report of an allocation. Unknown values are null, never 0."""
+    """The report of an allocation. Unknown values are None, never 0."""
 
     attainable: Optional[AllocationResultAttainable]
     """The requirement that cannot be kept, and the best that can be had."""
@@ -138,9 +138,9 @@ class AllocationResult(Result):
     cost_basis: Literal['given', 'tolerance-unit', 'constant-precision', 'equal-shares']
     """Source of the costs: given, or relative to the tolerance unit of ISO 286."""
     cost_before: Optional[float]
-    """All costs before; null where no process holds some tolerance, and without costs."""
+    """All costs before; None where no process holds some tolerance, and without costs."""
     cost_unrounded: Optional[float]
-    """The cost of the cheapest tolerances without rounding to steps or standard grades; null without such rounding."""
+    """The cost of the cheapest tolerances without rounding to steps or standard grades; None without such rounding."""
     dimensions_table: Optional[str]
     """The entries of dimensions that have changed, ready to paste into the study."""
     evaluations: int
@@ -156,13 +156,13 @@ class AllocationResult(Result):
     in_model_s: float
     """Time within the model, of all threads together."""
     joint_requirement: Optional[JointKept]
-    """Required joint yield of all characteristics with limits; null if none is required."""
+    """Required joint yield of all characteristics with limits; None if none is required."""
     joint_yield: AllocationResultJointYield
-    """The share of assemblies that keep all limits at once; null with fewer than two characteristics with limits."""
+    """The share of assemblies that keep all limits at once; None with fewer than two characteristics with limits."""
     loosest_scaling: AllocationResultLoosestScaling
     """Factor of all tolerances at which some requirement is just kept."""
     loss: AllocationResultLoss
-    """The part of them that is quality loss and scrap; null without losses."""
+    """The part of them that is quality loss and scrap; None without losses."""
     method: str
     """The method by which derivatives were taken."""
     model_points: int
@@ -287,11 +287,11 @@ class AllocationResultRequirements(Record):
     characteristic: str
     """The characteristic."""
     interval: Optional[List[Optional[float]]]
-    """Interval of the value, with null for an unbounded end; null if the value is not known."""
+    """Interval of the value, with None for an unbounded end; None if the value is not known."""
     met: Optional[bool]
-    """True if the requirement is kept; null if that is not known, and if no tolerances were found."""
+    """True if the requirement is kept; None if that is not known, and if no tolerances were found."""
     met_before: Optional[bool]
-    """True if the requirement was kept before; null if that is not known."""
+    """True if the requirement was kept before; None if that is not known."""
     required: float
     """Required amount. For `rss` and `worst-case`, the fraction of the limits used, at most 1."""
     requirement: str
@@ -301,7 +301,7 @@ class AllocationResultRequirements(Record):
     bands. None if there is no sample, and for rss, which samples cannot judge.
     """
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """Verdict on the requirement; null if no tolerances were found."""
+    """Verdict on the requirement; None if no tolerances were found."""
     verdict_before: Literal['met', 'missed', 'inconclusive']
     """Verdict on the requirement before."""
 
@@ -310,7 +310,7 @@ class AllocationResultRequirementsSampled(Record):
     """Verdict of a sample on a requirement, as it is written."""
 
     interval: Optional[List[Optional[float]]]
-    """Interval of the value, three errors on either side; null if the value is not known."""
+    """Interval of the value, three errors on either side; None if the value is not known."""
     value: Optional[float]
     """Value from the sample."""
     verdict: Literal['met', 'missed', 'inconclusive']
@@ -339,7 +339,7 @@ class AllocationResultShadowPrices(Record):
 
 
 class AnalysisResult(Result):
-    """The report of an analysis, as `--json` prints it. Unknown values are null, never 0."""
+    """The report of an analysis, as `--json` prints it. Unknown values are None, never 0."""
 
     account: Optional[Account]
     """The findings of `auto` and the use of its points; None for any other method."""
@@ -472,7 +472,7 @@ class CharacteristicResult(Fitted):
     basis: FigureBases
     """Bases of the figures: `proof`, `points` of the model, or the `surface`."""
     coefficient_of_variation: Optional[Verified]
-    """Sigma divided by the magnitude of the mean; null if unknown, and if the mean may be 0."""
+    """Sigma divided by the magnitude of the mean; None if unknown, and if the mean may be 0."""
     conditional_yield: Optional[ConditionalYield]
     """Yield of the assemblies that keep the limits of the characteristic that this one is given. None if it is given
     none, or if it is unknown.
@@ -544,7 +544,7 @@ class CharacteristicResult(Fitted):
     pearson_fit: Optional[Capability]
     """Capability by the Pearson fit."""
     points_to_decide: Optional[int]
-    """Plain points of the model that would decide the target yield; null unless the verdict comes from an unrefuted
+    """Plain points of the model that would decide the target yield; None unless the verdict comes from an unrefuted
     surface.
     """
     possible_interactions: int
@@ -557,7 +557,7 @@ class CharacteristicResult(Fitted):
     """Assemblies below the lower limit, per million."""
     ppm_below_interval: Optional[List[float]]
     """95 % interval of the assemblies below the lower limit alone, per million: 0 to 0 if a proof excludes them,
-    null if it is unknown.
+    None if it is unknown.
     """
     quantiles: Optional[QuantileEstimates]
     """Quantiles with their errors. None if nothing is known of the distribution."""
@@ -617,7 +617,7 @@ class CharacteristicResult(Fitted):
     yield_: Optional[float]
     """Share of assemblies within the limits."""
     yield_interval: Optional[List[float]]
-    """Interval of the yield; null if unknown."""
+    """Interval of the yield; None if unknown."""
     yield_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
     """Source of the yield. None if there is no yield."""
 
@@ -661,13 +661,13 @@ class ComparedMethod(Record):
     skewness: Optional[float]
     """Third standardised moment."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """Verdict on the target yield; null without a target."""
+    """Verdict on the target yield; None without a target."""
     yield_: Optional[float]
     """Share within the limits."""
 
 
 class ComparisonResult(Result):
-    """The report of a comparison, as `--json` prints it. Unknown values are null, never 0."""
+    """The report of a comparison, as `--json` prints it. Unknown values are None, never 0."""
 
     cached: int
     """Points whose answers were known from an earlier run."""
@@ -751,13 +751,13 @@ class CoverageIntervals(Record):
     equal_tails: List[float]
     """Interval with equal shares of assemblies below and above it."""
     equal_tails_errors: List[Optional[float]]
-    """Errors of the ends of `equal_tails`; null if unknown."""
+    """Errors of the ends of `equal_tails`; None if unknown."""
     probability: float
     """Share of assemblies that each interval holds."""
     shortest: List[float]
     """Shortest interval."""
     shortest_errors: List[Optional[float]]
-    """Errors of the ends of `shortest`, as quantiles; null if unknown."""
+    """Errors of the ends of `shortest`, as quantiles; None if unknown."""
     source: Literal['proof', 'samples', 'surface-law', 'pearson']
     """Source of the intervals: that of the quantiles."""
 
@@ -775,11 +775,11 @@ class DimensionResult(Record):
     """One dimension as the analysis took it."""
 
     degrees: Optional[float]
-    """Degrees of freedom of its standard uncertainty; null if the study gives none."""
+    """Degrees of freedom of its standard uncertainty; None if the study gives none."""
     description: Optional[str]
     """Description in a few words."""
     distribution: Optional[str]
-    """The kind of its distribution; null when it does not vary."""
+    """The kind of its distribution; None when it does not vary."""
     drawing: Optional[str]
     """Number of the drawing."""
     feature: Optional[str]
@@ -1007,7 +1007,7 @@ class FrontPoint(Record):
     last.
     """
     tolerances: Optional[List[float]]
-    """Half bands, in the order of [`Allocation::tolerances`]."""
+    """Half bands, in the order of `Allocation::tolerances`."""
 
 
 class Goal(Record):
@@ -1088,11 +1088,11 @@ class JointKept(Record):
     before: Optional[float]
     """Value before."""
     interval: Optional[List[Optional[float]]]
-    """Interval of the value, with null for an unbounded end; null if the value is not known."""
+    """Interval of the value, with None for an unbounded end; None if the value is not known."""
     met: Optional[bool]
-    """True if the requirement is kept; null if that is not known, and if no tolerances were found."""
+    """True if the requirement is kept; None if that is not known, and if no tolerances were found."""
     met_before: Optional[bool]
-    """True if the requirement was kept before; null if that is not known."""
+    """True if the requirement was kept before; None if that is not known."""
     required: float
     """Required amount. For `rss` and `worst-case`, the fraction of the limits used, at most 1."""
     requirement: str
@@ -1100,7 +1100,7 @@ class JointKept(Record):
     sampled: Optional[JointKeptSampled]
     """Verdict from a sample of the model at the tolerances found. None if there is no sample."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """Verdict on the requirement; null if no tolerances were found."""
+    """Verdict on the requirement; None if no tolerances were found."""
     verdict_before: Literal['met', 'missed', 'inconclusive']
     """Verdict on the requirement before."""
 
@@ -1109,7 +1109,7 @@ class JointKeptSampled(Record):
     """Verdict of a sample on a requirement, as it is written."""
 
     interval: Optional[List[Optional[float]]]
-    """Interval of the value, three errors on either side; null if the value is not known."""
+    """Interval of the value, three errors on either side; None if the value is not known."""
     value: Optional[float]
     """Value from the sample."""
     verdict: Literal['met', 'missed', 'inconclusive']
@@ -1133,7 +1133,7 @@ class Judged(Record):
     """Requirement with the value found, its interval and the verdict."""
 
     interval: Optional[List[Optional[float]]]
-    """Interval of the value, an end null if it is unbounded. None as a whole if it is unknown."""
+    """Interval of the value, an end None if it is unbounded. None as a whole if it is unknown."""
     met: Optional[bool]
     """True if the requirement is met. None if that is unknown."""
     required: float
@@ -1141,7 +1141,7 @@ class Judged(Record):
     requirement: str
     """Name of the requirement: `yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
     value: Optional[float]
-    """Value found, null if it is unknown."""
+    """Value found, None if it is unknown."""
     verdict: Literal['met', 'missed', 'inconclusive']
     """Verdict from the interval."""
 
@@ -1155,7 +1155,7 @@ class Law(Record):
     quantiles: Optional[Dict[str, float]]
     """Quantiles of the distribution."""
     support: Optional[List[Optional[float]]]
-    """Lower and upper end of the support, null if infinite."""
+    """Lower and upper end of the support, None if infinite."""
     type: Optional[str]
     """Type in the Pearson system: `normal`, or `I` to `VII`."""
 
@@ -1202,9 +1202,9 @@ class OutputCorrelation(Record):
     between: List[str]
     """Names of the two characteristics."""
     error: Optional[float]
-    """Error of the coefficient; null if the model was not evaluated for it."""
+    """Error of the coefficient; None if the model was not evaluated for it."""
     value: Optional[float]
-    """Coefficient of correlation; null if one of them does not vary, or is unknown."""
+    """Coefficient of correlation; None if one of them does not vary, or is unknown."""
 
 
 class Pair(Record):
@@ -1264,7 +1264,7 @@ class QuantileEstimates(Record):
     source: Literal['proof', 'samples', 'surface-law', 'pearson']
     """Source of the quantiles: that of the yield, unless that is a proof about the limits only."""
     values: Dict[str, Optional[EstimatedQuantile]]
-    """Quantiles by their probabilities; null at a probability that the source does not resolve."""
+    """Quantiles by their probabilities; None at a probability that the source does not resolve."""
 
 
 class RareCharacteristic(Record):
@@ -1315,7 +1315,7 @@ class RareCharacteristic(Record):
 
 
 class RareResult(Result):
-    """The report of rare events, as `--json` prints it. Unknown values are null, never 0."""
+    """The report of rare events, as `--json` prints it. Unknown values are None, never 0."""
 
     cached: int
     """Points whose answers were known from an earlier run."""
@@ -1520,8 +1520,10 @@ class SampledModel(Record):
     """Histogram of the sample, with some tens of intervals."""
     kurtosis: Optional[float]
     """Value for the fourth standardised moment, which is 3 for a normal."""
-    left: float
-    """Share of the variance that the surrogate left unexplained at the check points."""
+    left: Optional[float]
+    """Share of the variance that the surrogate left unexplained at the check points. None if no surrogate is a
+    control variate, because the characteristic follows a choice from stock.
+    """
     mean: Optional[float]
     """Value for the expected value."""
     samples: int
@@ -1685,7 +1687,7 @@ class SimulatedCharacteristic(Record):
     """Assemblies below the lower limit, per million."""
     ppm_below_interval: Optional[List[float]]
     """95 % interval of the assemblies below the lower limit alone, per million: 0 to 0 if a proof excludes them,
-    null if it is unknown.
+    None if it is unknown.
     """
     range: Optional[List[float]]
     """Least and greatest value of the sample."""
@@ -1720,13 +1722,13 @@ class SimulatedCharacteristic(Record):
     yield_: Optional[float]
     """Share of assemblies within the limits. None if there are no limits."""
     yield_bounds: Optional[List[float]]
-    """Yield if all points without a value are rejected, and if none is; null if every point has one."""
+    """Yield if all points without a value are rejected, and if none is; None if every point has one."""
     yield_interval: Optional[List[float]]
-    """95 % interval of the yield, with the uncertainty of measured samples; null if there are no limits."""
+    """95 % interval of the yield, with the uncertainty of measured samples; None if there are no limits."""
 
 
 class SimulationResult(Result):
-    """The report of a simulation, as `--json` prints it. Unknown values are null, never 0."""
+    """The report of a simulation, as `--json` prints it. Unknown values are None, never 0."""
 
     cached: int
     """Points whose answers were known from an earlier run."""
@@ -1827,12 +1829,12 @@ class SurfaceLaw(Record):
     if it was computed.
     """
     ppm_above: Optional[float]
-    """Share above the upper limit. None if there is no such limit."""
+    """Assemblies above the upper limit, per million."""
     ppm_below: Optional[float]
-    """Share below the lower limit. None if there is no such limit."""
+    """Assemblies below the lower limit, per million."""
     quantiles: Optional[Dict[str, float]]
-    """Quantiles at the [`PROBABILITIES`](sensitol_numeric::capability::PROBABILITIES). None if one of them is
-    unknown: those of the Pearson fit are reported then.
+    """Quantiles at the reported probabilities. None if one of them is unknown: those of the Pearson fit are reported
+    then.
     """
     refuted: Optional[LawRefutation]
     """Contradiction because of which points replace the distribution. None if there is none."""
@@ -1845,7 +1847,7 @@ class SurfaceLaw(Record):
 
 
 class SweepResult(Result):
-    """The report of a sweep, as `--json` prints it. Unknown values are null, never 0."""
+    """The report of a sweep, as `--json` prints it. Unknown values are None, never 0."""
 
     cached: int
     """Points whose answers were known from an earlier run."""
@@ -1862,7 +1864,7 @@ class SweepResult(Result):
     in_model_s: float
     """Time within the model, of all threads together."""
     method: Optional[str]
-    """The method that was run; null where nothing was done."""
+    """The method that was run; None where nothing was done."""
     parameter: Parameter
     """The swept parameter."""
     retried: int
@@ -1913,13 +1915,13 @@ class SweptPoint(Record):
     at: float
     """The parameter."""
     error_estimate: Optional[ErrorEstimate]
-    """Estimated errors of the figures; null without moments."""
+    """Estimated errors of the figures; None without moments."""
     kurtosis: Optional[float]
     """Fourth standardised moment."""
     mean: Optional[float]
     """First moment."""
     met: Optional[bool]
-    """True if the target yield is met; null if that is unknown, and without a target."""
+    """True if the target yield is met; None if that is unknown, and without a target."""
     nominal: Optional[float]
     """Value with every dimension at its nominal value."""
     ppm_above: Optional[float]
@@ -1930,14 +1932,14 @@ class SweptPoint(Record):
     """Rejected below the lower limit, in parts per million."""
     ppm_below_interval: Optional[List[float]]
     """95 % interval of the assemblies below the lower limit alone, per million: 0 to 0 if a proof excludes them,
-    null if it is unknown.
+    None if it is unknown.
     """
     quantile_errors: Dict[str, Optional[float]]
-    """Errors of the quantiles; null if unknown."""
+    """Errors of the quantiles; None if unknown."""
     quantile_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
-    """Source of the quantiles; null if there are none."""
+    """Source of the quantiles; None if there are none."""
     quantiles: Dict[str, Optional[float]]
-    """Quantiles; null at a probability that their source does not resolve."""
+    """Quantiles; None at a probability that their source does not resolve."""
     requirements: List[Judged]
     """Everything that is required of it, the target yield included."""
     rss: Optional[float]
@@ -1951,9 +1953,9 @@ class SweptPoint(Record):
     yield_: Optional[float]
     """Share of assemblies within the limits."""
     yield_interval: Optional[List[float]]
-    """Interval of the yield, with the uncertainty of measured samples; null if unknown."""
+    """Interval of the yield, with the uncertainty of measured samples; None if unknown."""
     yield_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
-    """Source of the yield; null without limits."""
+    """Source of the yield; None without limits."""
 
 
 class TailPoint(Record):
@@ -1962,7 +1964,7 @@ class TailPoint(Record):
     at: float
     """Value of the characteristic."""
     error: Optional[float]
-    """Estimated error of the share; null if all values are of one randomisation, so that there is no scatter."""
+    """Estimated error of the share; None if all values are of one randomisation, so that there is no scatter."""
     share: float
     """Share of the assemblies at or beyond the value."""
 
