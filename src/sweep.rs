@@ -300,6 +300,14 @@ impl AssemblyFunction for Gatherer {
         self.function().magnitudes(outputs, point)
     }
 
+    fn choice(&self, output: usize) -> Option<String> {
+        self.function().choice(output)
+    }
+
+    fn evaluations_per_point(&self, outputs: &[usize]) -> usize {
+        self.function().evaluations_per_point(outputs)
+    }
+
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let rows = request.points.rows();
         // Answers are stored for all outputs only, so other requests are evaluated directly.

@@ -6,6 +6,7 @@ use sensitol::analysis::{FigureBasis, Sensitivity, choice_points};
 use sensitol::assembly::{Adjustment, AssemblyFunction, Closure, Directions, Points, Request, Responses, Run};
 use sensitol::assembly::{Motion, MotionEnd, MotionExtremes, StockResponse};
 use sensitol::simulation::{Simulation, SimulationOptions, simulate};
+use sensitol::sweep::sweep;
 use sensitol::{Analysis, Dimension, Method, Options, Problem, Verdict, analyze};
 use sensitol_study::{Study, StudyText};
 
@@ -145,6 +146,21 @@ fn a_costly_choice_keeps_its_budget() {
         [0, 0]
     );
     assert_eq!(choice_points(&problem, &budgeted(300), 0), 0);
+}
+
+/// A sweep samples nothing, so that it has no figures of a costly model that follows a choice.
+#[test]
+fn a_sweep_of_a_costly_choice_has_no_surface() {
+    let found = sweep(&costly_shim(), "housing", &[39.9, 40.0, 40.1], &Options::default()).unwrap();
+    for analysis in &found.analyses {
+        let analysis = analysis.as_ref().unwrap();
+        assert!(analysis.characteristics.iter().all(|one| one.moments.is_none() && one.yield_interval().is_none()));
+        assert!(
+            analysis.warnings.iter().all(|warning| warning.code() == "choice-not-sampled"),
+            "{:?}",
+            analysis.warnings
+        );
+    }
 }
 
 /// A box sampler of the study's dimensions, over their bands.
