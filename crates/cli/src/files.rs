@@ -51,9 +51,15 @@ impl Files {
         self.read.push((resolved(path), what));
     }
 
-    /// Opens the file of `--output` of a command that writes pages and workbooks too, or returns stdout.
+    /// Opens the file of `--output` of a command that writes pages too, or returns stdout.
     pub(super) fn output(&mut self, asked: &OutputArgs) -> Result<Destination, Failure> {
-        refuse_other_kinds(asked, &["html", "htm", "pdf", "xlsx"])?;
+        refuse_other_kinds(asked, &["html", "pdf"])?;
+        self.output_of(asked, &Content::Report)
+    }
+
+    /// Opens the file of `--output` of a command that writes pages and workbooks too, or returns stdout.
+    pub(super) fn output_beside_workbook(&mut self, asked: &OutputArgs) -> Result<Destination, Failure> {
+        refuse_other_kinds(asked, &["html", "pdf", "xlsx"])?;
         self.output_of(asked, &Content::Report)
     }
 
@@ -127,12 +133,12 @@ fn resolved(path: &Path) -> PathBuf {
 /// Refuses a file of `--output` with the ending of another kind. The command has an option for each of `written`.
 fn refuse_other_kinds(asked: &OutputArgs, written: &[&str]) -> Result<(), Failure> {
     let Some(path) = &asked.output else { return Ok(()) };
-    let (file, found) = (path.display(), ending(path));
-    let right = match found.as_str() {
-        "json" if !asked.json => format!("--json -o {file}"),
-        "html" | "htm" if written.contains(&"html") => format!("--html {file}"),
-        "pdf" | "xlsx" if written.contains(&found.as_str()) => format!("--{found} {file}"),
-        "html" | "htm" | "pdf" | "xlsx" => format!("-o {}", path.with_extension("txt").display()),
+    let ending = ending(path);
+    let kind = if ending == "htm" { "html" } else { ending.as_str() };
+    let right = match kind {
+        "json" if !asked.json => format!("--json -o {}", path.display()),
+        kind if written.contains(&kind) => format!("--{kind} {}", path.display()),
+        "html" | "pdf" | "xlsx" => format!("-o {}", path.with_extension("txt").display()),
         _ => return Ok(()),
     };
     Err(Failure::OtherKind { path: path.clone(), right })

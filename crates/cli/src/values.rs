@@ -94,7 +94,7 @@ const OTHER_ENDINGS: [(&str, &str); 9] = [
     ("htm", "--html"),
     ("pdf", "--pdf"),
     ("json", "--json -o"),
-    ("xlsx", "--xlsx"),
+    ("xlsx", ""),
     ("txt", "-o"),
     ("md", "-o"),
     ("csv", "--csv DIR"),

@@ -37,7 +37,7 @@ pub(crate) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, 
     let study = read(path, asked.how.configuration.as_deref(), asked, given.clone(), look)?;
     let mut files = Files::of(path, &study, asked.work.journal.as_deref()).forced(asked.output.force);
     asked.points.iter().for_each(|points| files.reads(points, "read by --points"));
-    let destination = files.output(&asked.output)?;
+    let destination = files.output_beside_workbook(&asked.output)?;
     let mut beside =
         Beside::open(&mut files, &study, asked.csv.as_deref(), [asked.html.as_deref(), asked.pdf.as_deref()])?;
     beside.workbook = files.file(asked.xlsx.as_deref())?;

@@ -257,7 +257,7 @@ fn table(asked: &AnalyzeArgs) -> Option<StackArg> {
 impl<'a> Printer<'a> {
     fn open(asked: &'a AnalyzeArgs, look: Look<'a>, files: &mut Files) -> Result<Self, Failure> {
         let whole = asked.output.json || asked.output.output.is_some() || table(asked) == Some(StackArg::Csv);
-        let destination = whole.then(|| files.output(&asked.output)).transpose()?;
+        let destination = whole.then(|| files.output_beside_workbook(&asked.output)).transpose()?;
         let (text, entries, stacks, budgets, rows) = (String::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
         Ok(Self { asked, look, destination, text, entries, stacks, budgets, rows, shown: 0 })
     }

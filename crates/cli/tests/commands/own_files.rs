@@ -219,11 +219,15 @@ fn endings_of_other_kinds_are_refused() {
         ("analyze gap.toml -o book.xlsx", "--xlsx book.xlsx"),
         ("analyze gap.toml -o result.json", "--json -o result.json"),
         ("plan gap.toml -o page.html", "-o page.txt"),
+        ("simulate gap.toml -o book.xlsx", "-o book.txt"),
+        ("sweep gap.toml --over a=0.9:1.1:3 -o book.xlsx", "-o book.txt"),
         ("models -o models.json", "--json -o models.json"),
     ];
     for (line, right) in cases {
         let (code, fault) = run(folder.path(), line);
         assert!(code == 2 && fault.contains(right), "{line}: {code} {fault}");
+        // Only `analyze` has the option for a workbook.
+        assert!(line.starts_with("analyze") || !fault.contains("--xlsx"), "{line}: {fault}");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "{line} wrote a file");
     }
     // The right ending, other endings and none are free.
