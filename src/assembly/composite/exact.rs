@@ -13,8 +13,8 @@ const TOGETHER: usize = 64;
 /// Number of inputs from which a tape of the formula is used in place of a jet for each input. Below it both take less than 1 ms.
 const MANY: usize = 256;
 
-/// The first and the second derivatives of one output by every input, None where one does not exist.
-struct Pure {
+/// First and second derivatives of one output by every input; None where one does not exist.
+struct PureDerivatives {
     first: Vec<Option<f64>>,
     second: Vec<Option<f64>>,
 }
@@ -81,14 +81,14 @@ impl Composite {
             })
         };
         let mut derivatives: Vec<Option<Derivatives>> = needs.iter().map(none).collect();
-        for ((&k, Pure { first, second }), mixed) in known.iter().zip(pure).zip(mixed) {
+        for ((&k, PureDerivatives { first, second }), mixed) in known.iter().zip(pure).zip(mixed) {
             derivatives[k] = Some(Derivatives { first, second, mixed });
         }
         derivatives
     }
 
     /// Returns the first and the second derivatives of every output by these inputs, None where one does not exist.
-    fn pure(&self, place: &Place<'_>, inputs: &[usize]) -> Vec<Pure> {
+    fn pure(&self, place: &Place<'_>, inputs: &[usize]) -> Vec<PureDerivatives> {
         // One tape gives those of a formula with many inputs.
         let together = |&origin: &Origin| match origin {
             Origin::Formula(formula)
@@ -105,12 +105,12 @@ impl Composite {
         let jets: Vec<Vec<Jet>> = if open.is_empty() { Vec::new() } else { inputs.par_iter().map(along).collect() };
         let mut of_open = (0..open.len()).map(|output| {
             let first = jets.iter().map(|jets| jets[output].first(0)).collect();
-            Pure { first, second: jets.iter().map(|jets| jets[output].second()).collect() }
+            PureDerivatives { first, second: jets.iter().map(|jets| jets[output].second()).collect() }
         });
         let of_output = |together: Option<Vec<[f64; 2]>>| match together {
             Some(known) => {
                 let (first, second) = known.into_iter().map(|[first, second]| (Some(first), Some(second))).unzip();
-                Pure { first, second }
+                PureDerivatives { first, second }
             }
             None => of_open.next().expect("jets for every output that is open"),
         };
