@@ -460,7 +460,7 @@ impl Problem {
     }
 
     /// True if a characteristic follows a choice from stock and its model is costly: it takes its figures from points of the model.
-    pub(crate) fn follows_costly_choice(&self, characteristic: usize) -> bool {
+    pub fn follows_costly_choice(&self, characteristic: usize) -> bool {
         self.function.signature().costly && self.choice(characteristic).is_some()
     }
 

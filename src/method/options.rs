@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::method::Method;
 use crate::plan::Stencil;
+use crate::problem::Problem;
 use crate::warning::Figure;
 use sensitol_numeric::names::UnknownName;
 
@@ -178,6 +179,11 @@ impl FromStr for Pairs {
 }
 
 impl Options {
+    /// Number of points that the budget allows; None without one. A point may take several evaluations.
+    pub(crate) fn points(&self, problem: &Problem) -> Option<usize> {
+        self.budget.map(|budget| budget / problem.evaluations_per_point())
+    }
+
     /// Returns true if the results for a function with this signature are verified by points of the model.
     pub fn verifies(&self, of: &crate::assembly::Signature) -> bool {
         self.verify.map_or(of.cheap || of.costly, |points| points > 0)

@@ -482,7 +482,7 @@ warnings! {
         /// The dimensions concerned.
         dimensions: Vec<String>,
     };
-    /// A characteristic of a costly model follows a choice from stock, and no points of the model were sampled.
+    /// A characteristic of a costly model follows a choice from stock, and too few points of it have a value.
     ChoiceNotSampled = "choice-not-sampled" by surface::choice_not_sampled {
         /// The characteristic.
         characteristic: String,

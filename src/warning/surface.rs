@@ -80,7 +80,7 @@ pub(super) fn kink_at_nominal(characteristic: &str, dimensions: &[String]) -> Te
 
 pub(super) fn choice_not_sampled(characteristic: &str, choice: &str) -> Text {
     say(format!(
-        "No surface follows {choice}, and no points of the model were sampled after it. The figures of `{characteristic}` are unknown."
+        "No surface follows {choice}, and too few points of the model have a value after it. The figures of `{characteristic}` are unknown."
     ))
     .advise(Advice::Sample { points: None })
 }

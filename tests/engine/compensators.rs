@@ -148,6 +148,18 @@ fn a_costly_choice_keeps_its_budget() {
     assert_eq!(choice_points(&problem, &budgeted(300), 0), 0);
 }
 
+/// Without a tolerance there is nothing to sample: one point takes the eight evaluations of its choice.
+#[test]
+fn a_costly_choice_of_fixed_parts_is_one_point() {
+    let costly = costly_shim();
+    let fixed = costly.dimensions().iter().map(|one| Dimension::fixed(one.name(), one.nominal()).unwrap());
+    let problem = costly.clone().with_dimensions(fixed.collect()).unwrap();
+    assert_eq!(choice_points(&problem, &Options::default(), 0), 0);
+    let found = analyze(&problem, &Options::default()).unwrap();
+    assert!(found.run.evaluations <= 8, "{}", found.run.evaluations);
+    assert!(found.characteristics.iter().all(|one| one.moments.unwrap().sigma() == 0.0));
+}
+
 /// A sweep samples nothing, so that it has no figures of a costly model that follows a choice.
 #[test]
 fn a_sweep_of_a_costly_choice_has_no_surface() {

@@ -15,12 +15,12 @@ use crate::problem::Problem;
 use crate::simulation::{SimulationOptions, simulate_with};
 use sensitol_numeric::sampling::Sampler;
 
-/// Number of points without a budget. They give a yield of 99 % to 0.4 %, and sigma to some 4 %.
+/// Number of points without a budget. They give a yield of 99 % to 0.4 %, and the sigma of a normal value to 3 %.
 const POINTS: usize = 512;
 
 /// Greatest number of plain points that `auto` evaluates after `spent` points, because a characteristic of a costly model follows a
 /// choice from stock: 512, or what is left of a budget. Each point takes an evaluation for every value of the stock that is tried. Returns 0
-/// for all other models and methods, without verification, and if the budget allows too few to say anything.
+/// for all other models and methods, without verification, if no dimension varies, and if the budget allows too few to say anything.
 ///
 /// ```
 /// use sensitol::analysis::choice_points;
@@ -31,17 +31,13 @@ const POINTS: usize = 512;
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub fn choice_points(problem: &Problem, options: &Options, spent: usize) -> usize {
-    let each = problem.evaluations_per_point();
-    points_within(
-        problem,
-        options,
-        options.budget.map(|budget| budget / each).map(|points| points.saturating_sub(spent)),
-    )
+    points_within(problem, options, options.points(problem).map(|points| points.saturating_sub(spent)))
 }
 
 /// Number of plain points if so many points are left of a budget.
 fn points_within(problem: &Problem, options: &Options, left: Option<usize>) -> usize {
-    let follows = (0..problem.characteristics().len()).any(|c| problem.follows_costly_choice(c));
+    let varies = problem.dimensions().iter().any(|dimension| dimension.sigma() > 0.0);
+    let follows = varies && (0..problem.characteristics().len()).any(|c| problem.follows_costly_choice(c));
     if !follows || options.method != Method::Auto || !options.verifies(problem.function().signature()) {
         return 0;
     }
@@ -75,10 +71,11 @@ pub(in crate::analysis) fn choice_samples(
     if found.run.unfinished() {
         return Vec::new();
     }
-    let of = |c: usize| {
-        let depends = outcome.plan.varying().iter().copied().filter(|&d| outcome.plan.depends(c, d));
-        let ranks = recorded.ranks(c, &depends.collect::<Vec<usize>>());
+    let sampled =
+        (0..characteristics.len()).filter(|&c| problem.follows_costly_choice(c) && !characteristics[c].constant);
+    let figures = |c: usize| {
+        let ranks = recorded.ranks(c, &*outcome.plan);
         Some((c, of_simulation(&characteristics[c], None, (&found.characteristics[c], 1.0), ranks)?))
     };
-    (0..characteristics.len()).filter(|&c| problem.follows_costly_choice(c)).filter_map(of).collect()
+    sampled.filter_map(figures).collect()
 }

@@ -106,8 +106,7 @@ pub(in crate::analysis) fn model_samples(
         let last = enough || spent() + MORE as u64 * samples > most;
         if last {
             let of = |&c: &usize| {
-                let depends = outcome.plan.varying().iter().copied().filter(|&d| outcome.plan.depends(c, d));
-                let ranks = recorded.ranks(c, &depends.collect::<Vec<usize>>());
+                let ranks = recorded.ranks(c, &*outcome.plan);
                 let found = (&found.characteristics[c], few_scramblings);
                 let one = &characteristics[c];
                 Some((c, of_simulation(one, Some(left(one, climbed, c)), found, ranks)?))
@@ -207,7 +206,8 @@ fn known(found: &SimulatedCharacteristic, climbed: &AutoAccount) -> bool {
     within(sigma, climbed.accuracy) && climbed.accuracies.wanted().into_iter().all(each)
 }
 
-/// Figures of a simulation, beside a surface that leaves the share `left` of the variance unexplained, or beside none. Returns None if a moment is unknown.
+/// Figures of a simulation, beside a surface that leaves the share `left` of the variance unexplained, or beside none. Returns None if a moment
+/// is unknown.
 pub(super) fn of_simulation(
     one: &CharacteristicAnalysis,
     left: Option<f64>,

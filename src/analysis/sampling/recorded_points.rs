@@ -4,6 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
 use crate::estimate::Share;
+use crate::plan::Plan;
 use crate::problem::Problem;
 use sensitol_numeric::sampling::rank_first;
 
@@ -35,11 +36,11 @@ impl RecordingModel {
         *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = Kept::default();
     }
 
-    /// First-order indices of these dimensions for a characteristic.
-    pub(in crate::analysis) fn ranks(&self, c: usize, dimensions: &[usize]) -> Vec<(usize, Share)> {
+    /// First-order indices of the varying dimensions on which a characteristic can depend.
+    pub(in crate::analysis) fn ranks(&self, c: usize, plan: &dyn Plan) -> Vec<(usize, Share)> {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let of = |&d: &usize| ranked(d, kept.x.get(d)?, kept.y.get(c)?);
-        dimensions.iter().filter_map(of).collect()
+        plan.varying().iter().filter(|&&d| plan.depends(c, d)).filter_map(of).collect()
     }
 }
 

@@ -24,9 +24,7 @@ pub fn most_tail_points(problem: &Problem, options: &Options, spent: usize) -> u
     let asked =
         options.sample_tails && options.method == Method::Auto && options.derivatives != Some(DerivativeSource::Exact);
     match asked && limited && verified {
-        true => options.budget.map_or(MOST_TAIL_POINTS, |budget| {
-            (budget / problem.evaluations_per_point()).saturating_sub(spent).min(MOST)
-        }),
+        true => options.points(problem).map_or(MOST_TAIL_POINTS, |points| points.saturating_sub(spent).min(MOST)),
         false => 0,
     }
 }

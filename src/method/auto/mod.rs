@@ -110,7 +110,7 @@ impl Procedure for Auto {
             least,
             crate::method::auto::next_stage::most(plan.varying().len())
                 .max(least)
-                .min(options.budget.map_or(usize::MAX, |budget| budget / problem.evaluations_per_point())),
+                .min(options.points(problem).unwrap_or(usize::MAX)),
         ])
     }
 

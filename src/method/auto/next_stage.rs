@@ -111,7 +111,7 @@ pub(super) struct Climb<'p> {
 impl<'p> Climb<'p> {
     pub(super) fn new(problem: &'p Problem, plan: DifferencePlan, accuracy: f64, options: &Options) -> Self {
         let refined = vec![false; plan.varying().len()];
-        let budget = options.budget.map_or(usize::MAX, |budget| budget / problem.evaluations_per_point());
+        let budget = options.points(problem).unwrap_or(usize::MAX);
         let mut climb = Self {
             problem,
             plan,

@@ -168,8 +168,7 @@ pub(crate) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
 
 /// True if the figures of all characteristics of a costly model are those of points after a choice from stock, so that none has check points.
 fn all_follow_choices(problem: &Problem) -> bool {
-    let function = problem.function();
-    function.signature().costly && problem.outputs().iter().all(|&output| function.choice(output).is_some())
+    (0..problem.characteristics().len()).all(|c| problem.follows_costly_choice(c))
 }
 
 fn of_stage(counts: BTreeMap<Purpose, usize>) -> StageReport {
